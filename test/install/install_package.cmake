@@ -18,11 +18,17 @@ foreach(program IN ITEMS sixdof sixdof-bench)
 endforeach()
 
 # Assertions and debugging information name source files.
-set(kind_of_files "")
+set(kind_of_files --text)
 if(NOT BUILD_TYPE STREQUAL "Release")
   set(kind_of_files --binary-files=without-match)
 endif()
-execute_process(COMMAND grep -rlF ${kind_of_files} -e ${SOURCE}/ -e ${BUILD}/ ${INSTALLED}
+# At the begin of a path, also behind -I: the folders may be /sixdof, and share/sixdof/ is none of them.
+set(patterns "")
+foreach(folder IN ITEMS ${SOURCE} ${BUILD})
+  string(REGEX REPLACE "([][+.*()^$?|{}\\])" "\\\\\\1" folder ${folder})
+  list(APPEND patterns -e "(^|[^-[:alnum:]_./]|-[[:alpha:]])${folder}/")
+endforeach()
+execute_process(COMMAND ${CMAKE_COMMAND} -E env LC_ALL=C grep -rlE ${kind_of_files} ${patterns} ${INSTALLED}
   OUTPUT_VARIABLE files RESULT_VARIABLE result)
 if(NOT result EQUAL 1)
   message(FATAL_ERROR "these name ${SOURCE} or ${BUILD}:\n${files}")
