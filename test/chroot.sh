@@ -52,13 +52,16 @@ make_system() {
     if [[ -e /etc/apt/$file ]]; then cp -a "/etc/apt/$file" "$2/etc/apt/"; fi
   done
   cp /etc/resolv.conf /etc/hosts "$2/etc/"
+  # Certificates that this machine trusts beside Debian's: ca-certificates takes them up as it is installed.
+  mkdir -p "$2/usr/local/share/ca-certificates"
+  find /usr/local/share/ca-certificates -name '*.crt' -exec cp {} "$2/usr/local/share/ca-certificates/" \; 2>/dev/null || true
 }
 
 # inside FOLDER COMMAND...: in that system, with nothing of this environment but its way to the network.
 inside() {
   local root=$1 name kept=()
   shift
-  for name in http_proxy https_proxy no_proxy npm_config_registry; do
+  for name in http_proxy https_proxy no_proxy npm_config_registry NODE_EXTRA_CA_CERTS PIP_CERT; do
     if [[ -n ${!name-} ]]; then kept+=("$name=${!name}"); fi
   done
   env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "${kept[@]}" \

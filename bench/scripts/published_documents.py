@@ -236,6 +236,12 @@ def filled(file, program):
     return MARK.sub(fill, file.read_text(encoding="utf-8"))
 
 
+def can_draw(program):
+    """Whether `sixdof report` can: it needs Node.js and the libraries that the build takes from npm."""
+    libraries = pathlib.Path(program).resolve().parents[1] / "share/sixdof/report/vendor"
+    return bool(shutil.which("node")) and (libraries / "vega.min.js").exists()
+
+
 def drawings(program):
     """(file in bench/published, its text) of every figure whose data are published. @raises Stale"""
     for name, (figure, *words) in json.loads(DRAWINGS.read_text(encoding="utf-8")).items():
@@ -276,7 +282,7 @@ def check(program=PROGRAM):
                 stale += 1
                 print(f"{file.relative_to(ROOT)}: <!--= {mark['what']} -->: says {mark['text'][:200]!r}, "
                       f"published is {now[:200]!r}", file=sys.stderr)
-    for file, text in drawings(program) if shutil.which("node") else []:  # Figures are drawn by Node.js.
+    for file, text in drawings(program) if can_draw(program) else []:
         if not file.exists() or file.read_text(encoding="utf-8") != text:
             stale += 1
             print(f"{file}: another figure than `sixdof report` draws now", file=sys.stderr)

@@ -97,7 +97,7 @@ class Marks(unittest.TestCase):
         self.publish(ROW | {"cpu_time": 2.5})
         self.assertEqual(documents.check(SIXDOF), 1)
 
-    @unittest.skipUnless(shutil.which("node"), "figures are drawn by Node.js")
+    @unittest.skipUnless(documents.can_draw(SIXDOF), "no Node.js, or without libraries of npm")
     def test_a_drawing(self):
         documents.DRAWINGS.write_text(json.dumps({"time.svg": ["time_distance", "rows.json"], "other.svg": ["time_distance", "gone/rows.json"]}))
         self.fill("")
