@@ -15,9 +15,10 @@ namespace sixdof {
 std::unique_ptr<Algorithm> make_exact_algorithm();
 
 /// `exact-depth`: the law of depth by quadrature (oracle/depth_integral.h), which `vps` tends to; the penalty is the
-/// largest depth. `exact-way-out`: the same along the shortest way out of A, which `vps-field` tends to. The force is
-/// within the parameter `tolerance`; a query that does not get there within `most_pieces` fails. They need solids.
+/// largest depth. The force is within the parameter `tolerance`; a query that does not get there within `most_pieces`
+/// fails. It needs solids.
 std::unique_ptr<Algorithm> make_exact_depth_algorithm();
+/// `exact-way-out`: the same along the shortest way out of A, which `vps-field` tends to.
 std::unique_ptr<Algorithm> make_exact_way_out_algorithm();
 
 /// `brute-force`: the smallest distance over all pairs of triangles; collide where it is 0. It has no tree and shares

@@ -19,13 +19,16 @@ inline constexpr std::size_t k_most_judged_contacts = 128;
 
 /// The contacts of one pose of bodies that overlap.
 struct ContactScore {
-  std::size_t count = 0;                        ///< Contacts of the answer.
-  std::size_t judged = 0;                       ///< Of them those that all that follows is about.
-  double off_sum = 0.0, off_max = 0.0;          ///< JudgedContact::off().
-  double normal_sum = 0.0, normal_max = 0;      ///< JudgedContact::normal_angle.
-  std::size_t off_bodies = 0;                   ///< Contacts that lie off both bodies: by more than k_contact_slack.
-  std::size_t reversed = 0;                     ///< JudgedContact::is_reversed().
-  double depth_sum = 0.0, thickness_sum = 0.0;  ///< Of depths above 0; JudgedContact::thickness.
+  std::size_t count = 0;       ///< Contacts of the answer.
+  std::size_t judged = 0;      ///< Of them those that all that follows is about.
+  double off_sum = 0.0;        ///< Sum of JudgedContact::off().
+  double off_max = 0.0;        ///< The largest of them.
+  double normal_sum = 0.0;     ///< Sum of JudgedContact::normal_angle.
+  double normal_max = 0.0;     ///< The largest of them.
+  std::size_t off_bodies = 0;  ///< Contacts that lie off both bodies: by more than k_contact_slack.
+  std::size_t reversed = 0;    ///< JudgedContact::is_reversed().
+  double depth_sum = 0.0;      ///< Sum of the depths above 0.
+  double thickness_sum = 0.0;  ///< Sum of JudgedContact::thickness of these contacts.
   /// Of the mean normal to the exact force; none where either is zero.
   std::optional<double> force_angle = {};
   /// Distance of the point of ContactTruth::truth_points() that is farthest from all contacts.
@@ -60,6 +63,7 @@ ContactChange compare_contacts(const Contacts& x, const Contacts& y, double diag
 /// Sums over the poses of a row.
 class ContactScores {
  public:
+  /// A pose.
   void add(const ContactScore& score);
   /// Of (A, B) and of (B, A), both in A's frame; none if (B, A) has no answer.
   void add_exchange(const std::optional<ContactChange>& change) { exchange_.add(change); }
@@ -70,7 +74,9 @@ class ContactScores {
   /// moves
   void add_step(const ContactChange& change, double force_angle, double center);
 
+  /// Poses that were added.
   std::size_t scored() const { return scored_; }
+  /// Of them those with a fault, ContactScore::is_faulty().
   std::size_t faulty() const { return faulty_; }
 
   /// Calls use(counter, value) for all of which there are values; measure/metrics.h explains the counters.

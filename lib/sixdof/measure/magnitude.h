@@ -21,6 +21,7 @@ double peak(std::span<const double> values);
 
 /// @throws BadArgument unless both series have the same length. Every measure of two series calls this first.
 void check_same_length(Vectors ideal, Vectors measured);
+/// The same for series of numbers.
 void check_same_length(std::span<const double> ideal, std::span<const double> measured);
 
 /// RMS difference of the magnitudes: sqrt(1/N sum (|i_k|/max|i| - |m_k|/max|m|)^2), a pure number. Each series is
