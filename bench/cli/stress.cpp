@@ -155,7 +155,7 @@ std::optional<int> run_stress_cell_if_asked(int argc, const char* const* argv) {
   Registry registry;
   return study::run_stress_cell_if_asked(
       argc, argv, [&](const std::string& name, const std::vector<std::string>& external) -> const Algorithm& {
-        register_all_algorithms(registry, {.external = external});
+        register_all_algorithms(registry, {.external = external, .reuse = true});
         add_generators(registry);
         return registry.find(name);
       });

@@ -98,7 +98,7 @@ std::vector<std::string> register_all_algorithms(Registry& registry, const Proce
   for (std::unique_ptr<Algorithm>& algorithm : local.take()) {
     const bool third_party = place++ >= own;
     if (options.isolate == "all" || (options.isolate == "third-party" && third_party)) {
-      RemoteProgram server{serving_command(algorithm->traits().name), limits};
+      RemoteProgram server = remote_program(serving_command(algorithm->traits().name), limits);
       algorithm = std::make_unique<RemoteAlgorithm>(std::move(algorithm), std::move(server));
     }
     registry.add(std::move(algorithm));

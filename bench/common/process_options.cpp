@@ -26,7 +26,8 @@ double ProcessOptions::default_memory_gb() {
 ProcessLimits ProcessOptions::limits() const {
   return {.query_s = parse_duration("--query-timeout", query_timeout),
           .prepare_s = parse_duration("--prepare-timeout", prepare_timeout),
-          .memory_bytes = static_cast<std::size_t>(k_gb * memory_gb)};
+          .memory_bytes = static_cast<std::size_t>(k_gb * memory_gb),
+          .reuse = reuse};
 }
 
 void add_process_options(CLI::App& command, ProcessOptions& options) {

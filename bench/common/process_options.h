@@ -20,6 +20,7 @@ struct ProcessOptions {
   std::string prepare_timeout = "10min";
   double memory_gb = default_memory_gb();  ///< 0 for no limit.
   bool rivals = true;                      ///< Those that are set up (rivals.h).
+  bool reuse = false;                      ///< ProcessLimits::reuse.
 
   static double default_memory_gb();
 

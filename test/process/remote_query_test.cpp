@@ -330,6 +330,58 @@ TEST(Script, GivesUpAfterTooManyDeathsInARow) {
   EXPECT_EQ(count(Status::crashed), static_cast<std::ptrdiff_t>(list.size())) << "of another row";
 }
 
+/// The processes of pairs that are prepared one after the other.
+std::vector<double> processes(const std::string& can, ProcessLimits limits, const Mesh& b = cone()) {
+  const auto algorithm = script(R"(echo "{\"distance\": $$}")", limits, R"({"prepared":true})", can);
+  std::vector<double> list;
+  for (int i = 0; i < 3; ++i) {
+    const auto query = algorithm->prepare(torus(), b, algorithm->settings());
+    list.push_back(query->distance(Pose()).value.distance);
+  }
+  return list;
+}
+
+TEST(Script, APairMayTakeTheProcessOfTheOneBefore) {
+  const std::vector<double> same = processes("\"again\"", {.reuse = true});
+  EXPECT_EQ(same[0], same[1]);
+  EXPECT_EQ(same[0], same[2]);
+  for (const std::vector<double>& each : {processes("\"again\"", {}), processes("", {.reuse = true})}) {
+    EXPECT_NE(each[0], each[1]);
+    EXPECT_NE(each[1], each[2]);
+  }
+}
+
+TEST(Script, TwoPairsAtATimeHaveTwoProcesses) {
+  const auto algorithm = script(R"(echo "{\"distance\": $$}")", {.reuse = true}, R"({"prepared":true})", "\"again\"");
+  const auto first = algorithm->prepare(torus(), cone(), algorithm->settings());
+  const auto second = algorithm->prepare(torus(), torus(), algorithm->settings());
+  EXPECT_NE(first->distance(Pose()).value.distance, second->distance(Pose()).value.distance);
+}
+
+TEST(Script, AProcessThatReadsFilesAgainSeesTheNextPair) {
+  // The size of the vertices of A, from its file.
+  const auto algorithm = script(R"(echo "{\"distance\": $(wc -c </proc/self/fd/3 | tr -d ' ')}")", {.reuse = true},
+                                R"({"prepared":true})", "\"again\"");
+  for (const Mesh* const mesh : {&torus(), &cone(), &torus()}) {
+    const auto query = algorithm->prepare(*mesh, *mesh, algorithm->settings());
+    EXPECT_EQ(query->distance(Pose()).value.distance, 24.0 * static_cast<double>(mesh->vertices().size()));
+  }
+}
+
+TEST(Script, AProcessThatWasEndedIsNotTakenAgain) {
+  const auto algorithm = script(R"(case $line in *collide*) exit 1;; *) echo "{\"distance\": $$}";; esac)",
+                                {.reuse = true}, R"({"prepared":true})", "\"again\"");
+  double first = 0.0;
+  {
+    const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
+    first = query->distance(Pose()).value.distance;
+    EXPECT_EQ(query->collide(Pose()).status, Status::crashed);
+    EXPECT_NE(query->distance(Pose()).value.distance, first);
+  }
+  const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
+  EXPECT_NE(query->distance(Pose()).value.distance, first);
+}
+
 TEST(External, IsRefusedUnlessItGreets) {
   const auto words = [](const std::string& command, ProcessLimits limits = {}) -> std::string {
     try {

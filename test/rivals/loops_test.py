@@ -119,6 +119,14 @@ class Loop(unittest.TestCase):
         self.assertEqual(self.ask_contacts("inf", 1)["status"], "non_finite")
         self.assertEqual(self.time([pose(0.1)], query="contacts")["kind"], "bad_argument", "they are never asked by time")
 
+    def test_another_pair_takes_the_place_of_the_first(self):
+        if "again" not in self.program.hello()["can"]:
+            self.skipTest("the loop prepares one pair")
+        self.prepare()
+        Mesh(str(self.folder), "a", [[2 * x for x in row] for row in A], B)  # in the same file
+        self.prepare()
+        self.assertAlmostEqual(self.program.ask("distance", pose(0.0))["distance"], 2 * SUM - 18, delta=ROUNDING)
+
     def test_copies_are_recognised(self):
         self.prepare(b=self.a)
         self.assertEqual(self.program.ask("distance", pose(0.0))["b"], [0, 0, 1])

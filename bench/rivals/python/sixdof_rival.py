@@ -106,7 +106,7 @@ def choice(name, meaning, default, choices):
 def serve(query_class, *, name, version, summary, answers, law="none", depth="none", body="mesh", limits=(), parameters=()):
     """Answers requests until the input ends. What the library prints to standard output goes to standard error."""
     hello = {"protocol": 1, "name": name, "version": version, "summary": summary, "answers": list(answers), "law": law,
-             "depth": depth, "body": body, "limits": list(limits), "parameters": list(parameters), "can": ["time", "progress"]}
+             "depth": depth, "body": body, "limits": list(limits), "parameters": list(parameters), "can": ["time", "progress", "again"]}
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     server = _Server(query_class, hello)

@@ -44,6 +44,8 @@ std::string last_error() {
     words.erase(0, begin + k_systems_words.size());
     words.erase(std::min(words.find('\''), words.size()));
   }
+  // HDF5 1.14 does not say which filter, nor why.
+  if (words.find("filter returned failure") != std::string::npos) words += ": damaged, or a wrong checksum";
   return words.empty() ? "no reason given" : words;
 }
 

@@ -207,6 +207,7 @@ std::string to_line(const Greeting& greeting) {
   }
   if (greeting.times) can.push_back("time");
   if (greeting.progress) can.push_back("progress");
+  if (greeting.again) can.push_back("again");
   for (const Parameter& each : traits.parameters) parameters.push_back(parameter(each));
   return text({{"protocol", k_version},
                {"name", traits.name},
@@ -240,6 +241,7 @@ Greeting greeting_of(const std::string& line) {
     for (const std::string ability : json.value("can", Json::array())) {
       greeting.times = greeting.times || ability == "time";
       greeting.progress = greeting.progress || ability == "progress";
+      greeting.again = greeting.again || ability == "again";
     }
     return greeting;
   });

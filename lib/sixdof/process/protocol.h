@@ -84,6 +84,7 @@ struct Greeting {
   Traits traits;
   bool times = false;     ///< Understands Time.
   bool progress = false;  ///< Counts in Prepare::progress.
+  bool again = false;     ///< May prepare another pair in place of the one before.
 };
 
 /// What Prepare has made.

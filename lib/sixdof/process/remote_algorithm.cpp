@@ -11,7 +11,7 @@ namespace {
 
 /// The shell becomes the program, so that a signal that ends it is seen, and ends it.
 RemoteProgram program_of(const std::string& command_line, const ProcessLimits& limits) {
-  return {{"/bin/sh", "-c", "exec " + command_line}, limits};
+  return remote_program({"/bin/sh", "-c", "exec " + command_line}, limits);
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <numeric>
+#include <utility>
 
 #include <unistd.h>
 
@@ -85,28 +87,56 @@ enum Descriptor {
 
 }  // namespace
 
-/// What the process reads, and where it counts.
-struct RemoteQuery::Files {
-  Files(const Mesh& a, const Mesh& b)
-      : vertices_a("vertices of A", bytes_of(a.vertices())),
-        triangles_a("triangles of A", bytes_of(a.triangles())),
-        progress("progress", bytes_of(std::vector<std::uint64_t>{0})),
-        counter(progress.descriptor()) {
-    if (&a == &b) return;
-    vertices_b.emplace("vertices of B", bytes_of(b.vertices()));
-    triangles_b.emplace("triangles of B", bytes_of(b.triangles()));
+/// Those of B are empty if it is a copy of A.
+struct PairFiles {
+  PairFiles(const Mesh& a, const Mesh& b) : counter(progress.descriptor()) { set(a, b); }
+
+  void set(const Mesh& a, const Mesh& b) {
+    vertices_a.replace(bytes_of(a.vertices()));
+    triangles_a.replace(bytes_of(a.triangles()));
+    const bool copies = &a == &b;
+    vertices_b.replace(copies ? std::span<const std::byte>() : bytes_of(b.vertices()));
+    triangles_b.replace(copies ? std::span<const std::byte>() : bytes_of(b.triangles()));
+    counter.set(0);
   }
 
+  /// In the order of Descriptor.
   std::vector<int> descriptors() const {
-    std::vector<int> list{vertices_a.descriptor(), triangles_a.descriptor(), progress.descriptor()};
-    if (vertices_b) list.insert(list.end(), {vertices_b->descriptor(), triangles_b->descriptor()});
-    return list;
+    return {vertices_a.descriptor(), triangles_a.descriptor(), progress.descriptor(), vertices_b.descriptor(),
+            triangles_b.descriptor()};
   }
 
-  MemoryFile vertices_a, triangles_a, progress;
-  std::optional<MemoryFile> vertices_b, triangles_b;  ///< None for a copy of A.
+  MemoryFile vertices_a{"vertices of A", {}}, triangles_a{"triangles of A", {}};
+  MemoryFile progress{"progress", bytes_of(std::vector<std::uint64_t>{0})};
+  MemoryFile vertices_b{"vertices of B", {}}, triangles_b{"triangles of B", {}};
   SharedCounter counter;
 };
+
+class SpareProcess {
+ public:
+  struct Parts {
+    std::unique_ptr<PairFiles> files;
+    std::unique_ptr<ChildProcess> process;
+    Greeting greeting;
+  };
+  /// One process at most is kept; none is there twice.
+  void put(Parts parts) {
+    const std::lock_guard lock(mutex_);
+    parts_ = std::move(parts);
+  }
+  Parts take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(parts_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  Parts parts_;
+};
+
+RemoteProgram remote_program(std::vector<std::string> words, const ProcessLimits& limits) {
+  return {std::move(words), limits, limits.reuse ? std::make_shared<SpareProcess>() : nullptr};
+}
 
 Greeting ask_greeting(const RemoteProgram& program) {
   ChildProcess process(program.words, {}, program.limits.memory_bytes);
@@ -121,8 +151,8 @@ Greeting ask_greeting(const RemoteProgram& program) {
 
 RemoteQuery::RemoteQuery(RemoteProgram program, const Traits& traits, const Mesh& a, const Mesh& b,
                          const Settings& settings)
-    : program_(std::move(program)), name_(traits.name), files_(std::make_unique<Files>(a, b)) {
-  const bool copies = !files_->vertices_b;
+    : program_(std::move(program)), name_(traits.name) {
+  const bool copies = &a == &b;
   request_.a = {a.name(), path_of_descriptor(k_vertices_a), path_of_descriptor(k_triangles_a), a.vertices().size(),
                 a.triangles().size()};
   request_.b = {b.name(), path_of_descriptor(copies ? k_vertices_a : k_vertices_b),
@@ -130,21 +160,56 @@ RemoteQuery::RemoteQuery(RemoteProgram program, const Traits& traits, const Mesh
   request_.progress = path_of_descriptor(k_progress);
   for (const Parameter& each : traits.parameters) request_.settings.emplace_back(each.name, settings.choice(each.name));
   try {
-    start();
+    if (!take_spare(a, b)) {
+      files_ = std::make_unique<PairFiles>(a, b);
+      start();
+    }
   } catch (const ChildFailure& failure) {
     throw Error(fmt::format("{}: {} while it prepared the pair: {}", name_, to_string(failure.status), failure.what()));
   }
   timed_inside_ = greeting_.times;
 }
 
-RemoteQuery::~RemoteQuery() = default;
+RemoteQuery::~RemoteQuery() {
+  // A process that has been ended once has shown that it cannot be trusted with another pair.
+  if (!program_.spare || !process_ || !greeting_.again || !deaths_.empty()) return;
+  program_.spare->put({std::move(files_), std::move(process_), std::move(greeting_)});
+}
+
+/// Prepares the pair in the spare process, if there is one. @returns false if there is none, or it ends; a new process
+/// is to be asked then. @throws what the algorithm refuses
+bool RemoteQuery::take_spare(const Mesh& a, const Mesh& b) {
+  if (!program_.spare) return false;
+  SpareProcess::Parts parts = program_.spare->take();
+  if (!parts.process) return false;
+  files_ = std::move(parts.files);
+  process_ = std::move(parts.process);
+  greeting_ = std::move(parts.greeting);
+  files_->set(a, b);
+  try {
+    prepare_pair(expires_after(program_.limits.prepare_s));
+    return true;
+  } catch (const ChildFailure&) {
+    return false;
+  }
+}
 
 /// A new process with the pair prepared. @throws ChildFailure, what the algorithm refuses
 void RemoteQuery::start() {
   process_ = std::make_unique<ChildProcess>(program_.words, files_->descriptors(), program_.limits.memory_bytes);
+  const TimeLimit expired = expires_after(program_.limits.prepare_s);
   try {
-    const TimeLimit expired = expires_after(program_.limits.prepare_s);
     greeting_ = greeting_of(exchange(Hello{}, expired));
+  } catch (const Malformed& e) {
+    process_.reset();
+    throw nonsense(e);
+  }
+  prepare_pair(expired);
+}
+
+/// @throws ChildFailure, what the algorithm refuses
+void RemoteQuery::prepare_pair(const TimeLimit& expired) {
+  try {
     const auto sent = Clock::now();
     const std::string line = exchange(request_, expired);
     const double passed_ns = nanoseconds_since(sent);

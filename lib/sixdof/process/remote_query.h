@@ -21,16 +21,29 @@ struct ProcessLimits {
   double query_s = 10.0;                              ///< Wall time of one query.
   double prepare_s = 600.0;                           ///< Of the start of the program, and of preparing a pair.
   std::size_t memory_bytes = default_memory_limit();  ///< Data (RLIMIT_DATA); 0 for no limit.
+  /// A process whose pair is no longer needed prepares the next one, if the program can ("again"): for many small
+  /// pairs, where starting the program is most of the work. Without, no pair sees what another has left behind.
+  bool reuse = false;
 };
+
+/// The process of a pair that is no longer needed.
+class SpareProcess;
 
 /// A program that answers the protocol (README.md).
 struct RemoteProgram {
   std::vector<std::string> words;  ///< Program and arguments.
   ProcessLimits limits;
+  std::shared_ptr<SpareProcess> spare = nullptr;  ///< Of all queries of this program, if the limits say `reuse`.
 };
+
+/// With a place for a spare process where the limits want one.
+RemoteProgram remote_program(std::vector<std::string> words, const ProcessLimits& limits);
 
 /// What a program says of itself. @throws Error if it cannot be started, ends, is silent or answers nonsense
 protocol::Greeting ask_greeting(const RemoteProgram& program);
+
+/// What a process reads of a pair, and where it counts.
+struct PairFiles;
 
 /// A pair that is prepared in a process of its own, with files in memory for its meshes.
 class RemoteQuery final : public Query {
@@ -90,9 +103,9 @@ class RemoteQuery final : public Query {
     Status status = Status::crashed;
     std::string words;
   };
-  struct Files;
-
   void start();
+  bool take_spare(const Mesh& a, const Mesh& b);
+  void prepare_pair(const TimeLimit& expired);
   std::string exchange(const protocol::Request& request, const TimeLimit& expired);
   TimeLimit stalled() const;
   bool gave_up() const { return deaths_in_a_row_ >= k_most_deaths || time_outs_in_a_row_ >= k_most_time_outs; }
@@ -115,7 +128,7 @@ class RemoteQuery final : public Query {
 
   const RemoteProgram program_;
   const std::string name_;
-  const std::unique_ptr<Files> files_;
+  std::unique_ptr<PairFiles> files_;
   protocol::Prepare request_;
   protocol::Greeting greeting_;
   protocol::Prepared prepared_;

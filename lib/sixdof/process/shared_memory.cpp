@@ -16,14 +16,24 @@
 
 namespace sixdof {
 
-MemoryFile::MemoryFile(const char* name, std::span<const std::byte> content) {
+MemoryFile::MemoryFile(const char* name, std::span<const std::byte> content) : name_(name) {
   const int made = ::memfd_create(name, MFD_CLOEXEC);
   if (made < 0) throw Error(fmt::format("memfd_create: {}", std::strerror(errno)));
   descriptor_ = high_descriptor(made);
-  if (const int failure = write_all(descriptor_, {reinterpret_cast<const char*>(content.data()), content.size()})) {
+  try {
+    replace(content);
+  } catch (...) {
     ::close(descriptor_);
-    throw Error(fmt::format("{}: a file in memory of {} bytes: {}", name, content.size(), std::strerror(failure)));
+    throw;
   }
+}
+
+void MemoryFile::replace(std::span<const std::byte> content) {
+  int failure = 0;
+  if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) failure = errno;
+  if (failure == 0) failure = write_all(descriptor_, {reinterpret_cast<const char*>(content.data()), content.size()});
+  if (failure != 0)
+    throw Error(fmt::format("{}: a file in memory of {} bytes: {}", name_, content.size(), std::strerror(failure)));
 }
 
 MemoryFile::~MemoryFile() { ::close(descriptor_); }

@@ -20,7 +20,11 @@ class MemoryFile {
 
   int descriptor() const { return descriptor_; }
 
+  /// Another content in place of what is there. @throws Error
+  void replace(std::span<const std::byte> content);
+
  private:
+  const char* name_;
   int descriptor_ = -1;
 };
 
