@@ -137,9 +137,8 @@ TEST_F(ConfigurationSetTest, ReadsOnlyTheBucketItIsAskedFor) {
   const ConfigurationSet damaged(path);
   EXPECT_TRUE(same_bits(damaged.read(k_far), far_));
   EXPECT_TRUE(same_bits(damaged.read(k_deep), deep_));
-  EXPECT_THAT(
-      [&] { damaged.read(k_near); },
-      ThrowsMessage<BadFile>(AllOf(HasSubstr(path.string()), HasSubstr("distance/05"), HasSubstr("checksum"))));
+  EXPECT_THAT([&] { damaged.read(k_near); },
+              ThrowsMessage<BadFile>(AllOf(HasSubstr(path.string()), HasSubstr("distance/05"), HasSubstr("checksum"))));
 }
 
 TEST_F(ConfigurationSetTest, TheSameInputGivesTheSameBytes) {
