@@ -20,7 +20,8 @@ pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64 AND HWY_VERSION VERSION_LESS 1.1)
   # These versions compile functions for NEON with encryption, which the compiler does not inline into constructors without
   # it. None of its instructions is used.
-  target_compile_options(PkgConfig::HWY INTERFACE -march=armv8-a+crypto)
+  # For all sources, as precompiled headers are shared.
+  target_compile_options(sixdof_build_flags INTERFACE -march=armv8-a+crypto)
 endif()
 
 if(SIXDOF_WITH_FCL)
