@@ -331,11 +331,11 @@ TEST(Script, GivesUpAfterTooManyDeathsInARow) {
 }
 
 /// The processes of pairs that are prepared one after the other.
-std::vector<double> processes(const std::string& can, ProcessLimits limits, const Mesh& b = cone()) {
+std::vector<double> processes(const std::string& can, ProcessLimits limits) {
   const auto algorithm = script(R"(echo "{\"distance\": $$}")", limits, R"({"prepared":true})", can);
   std::vector<double> list;
   for (int i = 0; i < 3; ++i) {
-    const auto query = algorithm->prepare(torus(), b, algorithm->settings());
+    const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
     list.push_back(query->distance(Pose()).value.distance);
   }
   return list;
@@ -366,6 +366,19 @@ TEST(Script, AProcessThatReadsFilesAgainSeesTheNextPair) {
     const auto query = algorithm->prepare(*mesh, *mesh, algorithm->settings());
     EXPECT_EQ(query->distance(Pose()).value.distance, 24.0 * static_cast<double>(mesh->vertices().size()));
   }
+}
+
+TEST(Script, ARefusalOfASecondPairIsAskedOfANewProcess) {
+  // The second prepare of a process fails, for what the first has left behind.
+  const std::string leaky =
+      R"sh('"$(if [ -z "$full" ]; then echo "{\"prepared\":true}"; else echo "{\"error\":\"full\"}"; fi)"; full='1)sh";
+  const auto algorithm = script(R"(echo "{\"distance\": $$}")", {.reuse = true}, leaky, "\"again\"");
+  std::vector<double> list;
+  for (int i = 0; i < 2; ++i) {
+    const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
+    list.push_back(query->distance(Pose()).value.distance);
+  }
+  EXPECT_NE(list[0], list[1]);
 }
 
 TEST(Script, AProcessThatWasEndedIsNotTakenAgain) {

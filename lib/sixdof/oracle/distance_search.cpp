@@ -6,11 +6,10 @@
 #include <cmath>
 #include <span>
 
+#include <sixdof/base/simd_targets.h>
 #include <sixdof/oracle/distance_ties.h>
 #include <sixdof/oracle/triangle_distances.h>
 #include <sixdof/proximity/sorted_stack.h>
-
-#include <sixdof/base/simd_targets.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/distance_search.cpp"

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <mutex>
 #include <numeric>
 #include <utility>
 
 #include <unistd.h>
 
 #include <fmt/format.h>
+
+#include <sixdof/process/spare_process.h>
 
 namespace sixdof {
 
@@ -20,11 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
-}
-
-template <class Element>
-std::span<const std::byte> bytes_of(const std::vector<Element>& elements) {
-  return std::as_bytes(std::span(elements));
 }
 
 /// Kind of query and pose, bit by bit.
@@ -76,67 +72,7 @@ ChildFailure nonsense(const Malformed& e) {
   return {Status::failed, fmt::format("wrote a malformed reply: {}", e.what())};
 }
 
-/// Numbers of the descriptors as the program finds them.
-enum Descriptor {
-  k_vertices_a = 3,
-  k_triangles_a,
-  k_progress,
-  k_vertices_b,
-  k_triangles_b
-};
-
 }  // namespace
-
-/// Those of B are empty if it is a copy of A.
-struct PairFiles {
-  PairFiles(const Mesh& a, const Mesh& b) : counter(progress.descriptor()) { set(a, b); }
-
-  void set(const Mesh& a, const Mesh& b) {
-    vertices_a.replace(bytes_of(a.vertices()));
-    triangles_a.replace(bytes_of(a.triangles()));
-    const bool copies = &a == &b;
-    vertices_b.replace(copies ? std::span<const std::byte>() : bytes_of(b.vertices()));
-    triangles_b.replace(copies ? std::span<const std::byte>() : bytes_of(b.triangles()));
-    counter.set(0);
-  }
-
-  /// In the order of Descriptor.
-  std::vector<int> descriptors() const {
-    return {vertices_a.descriptor(), triangles_a.descriptor(), progress.descriptor(), vertices_b.descriptor(),
-            triangles_b.descriptor()};
-  }
-
-  MemoryFile vertices_a{"vertices of A", {}}, triangles_a{"triangles of A", {}};
-  MemoryFile progress{"progress", bytes_of(std::vector<std::uint64_t>{0})};
-  MemoryFile vertices_b{"vertices of B", {}}, triangles_b{"triangles of B", {}};
-  SharedCounter counter;
-};
-
-class SpareProcess {
- public:
-  struct Parts {
-    std::unique_ptr<PairFiles> files;
-    std::unique_ptr<ChildProcess> process;
-    Greeting greeting;
-  };
-  /// One process at most is kept; none is there twice.
-  void put(Parts parts) {
-    const std::lock_guard lock(mutex_);
-    parts_ = std::move(parts);
-  }
-  Parts take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(parts_, {});
-  }
-
- private:
-  std::mutex mutex_;
-  Parts parts_;
-};
-
-RemoteProgram remote_program(std::vector<std::string> words, const ProcessLimits& limits) {
-  return {std::move(words), limits, limits.reuse ? std::make_shared<SpareProcess>() : nullptr};
-}
 
 Greeting ask_greeting(const RemoteProgram& program) {
   ChildProcess process(program.words, {}, program.limits.memory_bytes);
@@ -176,8 +112,8 @@ RemoteQuery::~RemoteQuery() {
   program_.spare->put({std::move(files_), std::move(process_), std::move(greeting_)});
 }
 
-/// Prepares the pair in the spare process, if there is one. @returns false if there is none, or it ends; a new process
-/// is to be asked then. @throws what the algorithm refuses
+/// Prepares the pair in the spare process. @returns false if there is none, or it ends or refuses, which may be for
+/// what the pair before has left behind: a new process is to be asked then
 bool RemoteQuery::take_spare(const Mesh& a, const Mesh& b) {
   if (!program_.spare) return false;
   SpareProcess::Parts parts = program_.spare->take();
@@ -189,7 +125,7 @@ bool RemoteQuery::take_spare(const Mesh& a, const Mesh& b) {
   try {
     prepare_pair(expires_after(program_.limits.prepare_s));
     return true;
-  } catch (const ChildFailure&) {
+  } catch (const Error&) {
     return false;
   }
 }
