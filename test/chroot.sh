@@ -67,3 +67,37 @@ inside() {
   env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "${kept[@]}" \
     chroot "$root" "$@"
 }
+
+# in_name_space ARGUMENT...: runs this script again, as `$0 --root $root ARGUMENT...`, in a name space of its own, so that
+# what it mounts is gone when it ends, however it ends; then ends. Goes on in the inner run. Without `root` that is a folder
+# for temporary files, removed at the end.
+in_name_space() {
+  if [[ ${SIXDOF_IN_NAME_SPACE-} == yes ]]; then return; fi
+  local keep=true status=0
+  if [[ -z $root ]]; then root=$(mktemp -d) keep=false; fi
+  SIXDOF_IN_NAME_SPACE=yes unshare --mount --propagation private "$0" --root "$root" "$@" || status=$?
+  if ! $keep; then rm -rf --one-file-system "$root"; fi
+  exit "$status"
+}
+
+# clone_last_commit: of `here`, as sixdof in `root`. Sets `commit`, and begins steps.txt there.
+clone_last_commit() {
+  commit=$(git -C "$here" rev-parse --short=12 HEAD)
+  rm -rf "$root/sixdof"
+  git clone --quiet --no-hardlinks "$here" "$root/sixdof"
+  chown -R root:root "$root/sixdof" # git refuses folders of others
+  : >"$root/steps.txt"
+}
+
+failed=false
+# step COMMAND...: runs it in the clone; its output goes to steps.txt, and its end to the screen if it fails: then `failed`
+# is true, and its code 1.
+step() {
+  local begin=$SECONDS result=ok
+  if ! inside "$root" sh -c 'cd /sixdof && exec "$@"' sh "$@" >>"$root/steps.txt" 2>&1; then
+    result=FAILED failed=true
+    tail -n 40 "$root/steps.txt"
+  fi
+  printf '%-6s %4d min  %s\n' "$result" $(((SECONDS - begin + 30) / 60)) "$*"
+  [[ $result == ok ]]
+}
