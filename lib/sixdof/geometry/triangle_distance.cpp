@@ -111,6 +111,16 @@ Solution solve_normal(const Vector3d& w0, const Vector3d& u, double uu, const Ve
     }
     x.w = (w0 + x.s * u) - x.t * v;
   }
+  if (refinements > 1) {
+    // What is left of the error lies along the edges: near the parallel, s and t were each off by much more than
+    // the distance of the lines. Along the longer one it is removed by a projection.
+    if (uu >= vv) {
+      x.s -= x.w.dot(u) / uu;
+    } else {
+      x.t += x.w.dot(v) / vv;
+    }
+    x.w = (w0 + x.s * u) - x.t * v;
+  }
   x.found = true;
   return x;
 }

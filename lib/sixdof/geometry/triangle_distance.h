@@ -21,9 +21,6 @@ using TriangleCorners = std::array<Eigen::Vector3d, 3>;
 /// edges, needles and flat triangles, collinear or coincident corners, and at any distance from the origin. The error
 /// of the points along the distance has the same bound; where triangles are nearly parallel, the points are one pair of
 /// many that are nearly closest.
-///
-/// Known fault: a point and a flat triangle have exceeded it, by up to 42 times, in 19 of 400,000 random cases (those
-/// of MatchesHighPrecisionOnAPointAndATriangle with the seeds 11 to 210; the test has one of them).
 inline constexpr double k_triangle_distance_error = 1e-15;
 
 /// The distance of disjoint triangles whose computed difference rounds to zero.
