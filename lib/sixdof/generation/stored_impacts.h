@@ -11,7 +11,7 @@
 namespace sixdof {
 
 /// Raised whenever a bit of a truth changes.
-inline constexpr int k_impact_truth_version = 1;
+inline constexpr int k_impact_truth_version = 2;
 
 /// The bracket of each motion by ImpactTruth, from the cache on disk (base/cache.h) where it is known. The key is the
 /// content of both meshes, all bits of the motions, and k_impact_truth_version. Triangles of the closest points

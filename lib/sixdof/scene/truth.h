@@ -24,7 +24,7 @@ SceneAnswers replay(const Scene& scene, const SceneAlgorithm& algorithm, Questio
 
 /// Version of the definitions, of the last bits of the answers and of their layout in the cache: what another version
 /// stored is not used.
-inline constexpr int k_truth_version = 7;
+inline constexpr int k_truth_version = 8;
 
 /// The answers of `all-pairs`, from the cache on disk (base/cache.h), where they are kept by the scene's content hash.
 SceneAnswers truth_of(const Scene& scene, Question question, const std::function<bool()>& cancelled = {});
