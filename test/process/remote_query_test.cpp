@@ -4,6 +4,7 @@
 #include <bit>
 #include <chrono>
 #include <cstring>
+#include <latch>
 #include <memory>
 #include <random>
 #include <thread>
@@ -356,6 +357,25 @@ TEST(Script, TwoPairsAtATimeHaveTwoProcesses) {
   const auto first = algorithm->prepare(torus(), cone(), algorithm->settings());
   const auto second = algorithm->prepare(torus(), torus(), algorithm->settings());
   EXPECT_NE(first->distance(Pose()).value.distance, second->distance(Pose()).value.distance);
+}
+
+TEST(Script, AProcessOfAnotherThreadIsNotTaken) {
+  // It would end with that thread, in the middle of a query.
+  const auto algorithm = script(R"(echo "{\"distance\": $$}")", {.reuse = true}, R"({"prepared":true})", "\"again\"");
+  double of_thread = 0.0;
+  std::latch is_spare(1), may_end(1);
+  std::jthread thread([&] {
+    of_thread = algorithm->prepare(torus(), cone(), algorithm->settings())->distance(Pose()).value.distance;
+    is_spare.count_down();
+    may_end.wait();
+  });
+  is_spare.wait();
+  const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
+  const double first = query->distance(Pose()).value.distance;
+  may_end.count_down();
+  thread.join();
+  EXPECT_NE(first, of_thread);
+  EXPECT_EQ(query->distance(Pose()).value.distance, first);
 }
 
 TEST(Script, AProcessThatReadsFilesAgainSeesTheNextPair) {

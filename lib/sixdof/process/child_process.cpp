@@ -60,6 +60,12 @@ long count_kernel_kills() {
   return 0;
 }
 
+/// The same for all calls of a thread, and of no thread that begins while somebody has it.
+const std::shared_ptr<const char>& this_thread() {
+  thread_local const auto identity = std::make_shared<const char>();
+  return identity;
+}
+
 }  // namespace
 
 TimeLimit expires_after(double seconds) {
@@ -101,7 +107,7 @@ void limit_resources(std::size_t memory_bytes) {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::vector<int>& files,
                            std::size_t memory_bytes)
-    : kernel_kills_(count_kernel_kills()) {
+    : thread_(this_thread()), kernel_kills_(count_kernel_kills()) {
   std::vector<char*> pointers;
   for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
   pointers.push_back(nullptr);
@@ -132,6 +138,8 @@ ChildProcess::~ChildProcess() {
   end();
   ::close(output_);
 }
+
+bool ChildProcess::ends_with_this_thread() const { return thread_ == this_thread(); }
 
 /// Whether it has ended by itself. Its number stays taken until end().
 bool ChildProcess::has_ended() const {

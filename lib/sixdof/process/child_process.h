@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -57,6 +58,9 @@ class ChildProcess {
   /// to this one. @throws ChildFailure likewise
   void expect_no_line();
 
+  /// Whether the calling thread made it: it ends with no other one.
+  bool ends_with_this_thread() const;
+
   static constexpr std::size_t k_longest_line = std::size_t{16} << 20;
 
   /// The line by which a program says that an allocation failed, any time. receive() passes over it. If the program
@@ -73,6 +77,7 @@ class ChildProcess {
   bool has_ended() const;
   void end();
 
+  std::shared_ptr<const char> thread_;  ///< Stands for the thread that made it.
   pid_t process_ = -1;            ///< The program's keeper, which ends as the program does.
   int input_ = -1, output_ = -1;  ///< Of the program.
   int wait_status_ = 0;

@@ -49,9 +49,10 @@ class SpareProcess {
     const std::lock_guard lock(mutex_);
     parts_ = std::move(parts);
   }
-  /// Without a process if there is none.
+  /// Without a process if there is none that this thread made: one of another thread may end at any time, with it.
   Parts take() {
     const std::lock_guard lock(mutex_);
+    if (!parts_.process || !parts_.process->ends_with_this_thread()) return {};
     return std::exchange(parts_, {});
   }
 
