@@ -19,7 +19,20 @@ KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_messa
         "gamma_max_F_deg", "gamma_T_deg", "magnitude_error_F", "magnitude_error_T", "volume_error_mean", "bytes",
         "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label", "empty_call_ns", "tau_ns", "measured_ns",
         "eta_measured", "eta_predicted", "sigma_F", "sigma_T", "nu_F", "nu_T", "noise_F", "noise_T", "leakage", "jump_F",
-        "jump_T", "loop_work", "lag", "steps", "nu_direction_F", "nu_direction_T", "sigma_q"]
+        "jump_T", "loop_work", "lag", "steps", "nu_direction_F", "nu_direction_T", "sigma_q",
+        "gamma_own_F_deg", "gamma_own_T_deg", "magnitude_error_own_F", "magnitude_error_own_T", "unjudged_own", "phantoms",
+        "phantom_force_mean", "phantom_force_max", "voxels_x", "voxels_y", "voxels_z", "points", "spheres_a", "spheres_b",
+        # first contacts
+        "early", "early_max", "late_hits", "late_max", "missed_hits", "phantom_hits", "false_starts", "grazing", "hits",
+        "normal_max_deg",
+        # contacts and depths
+        "contacts_mean", "contact_off_mean", "off_bodies", "contact_normal_deg", "reversed_normals", "contact_force_deg",
+        "contact_depth_ratio", "uncovered_mean", "astray_mean", "exchange_flips", "exchange_points", "moved_flips", "moved_points",
+        "without_contact", "depth_ratio", "too_shallow", "too_deep", "missed_depths", "too_shallow_max", "too_deep_max",
+        "open_depths", "depth_width_max",
+        # scenes of meshes that deform
+        "amplitude", "processor_ns", "update_ns", "answer_ns", "p99_frame_ns", "built_triangles", "missed_pairs", "wrong_pairs",
+        "bodies"]
 DIGITS = 4  # Significant digits of the numbers that are kept.
 FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
 # Rivals whose queries take milliseconds or less, and those that take up to seconds on large meshes.
@@ -30,6 +43,10 @@ APPROXIMATE = ["ist", "ist-descent", "vps", "vps-field"]
 ALONG_PATHS = ["exact", "fcl-contacts", "bullet-gimpact", "ode", "simbody", *APPROXIMATE]
 SETS = ["elephant", "bunny", "armadillo", "ship", "torus-knot-1m"]
 FOUR_PAIRS = ["elephant", "bunny", "ship", "torus-knot-1m"]
+DEPTH_PAIRS = ["bunny", "elephant", "ship", "torus-knot-10k", "gyroid-ball-10k-circular-box-10k", "armadillo"]
+CONTACTS = ["exact-contacts", "fcl-contacts", "bullet-gimpact", "ode", "coal", "mujoco-sdf", "parry", "python-fcl"]
+# Simbody is left out: a query of meshes takes seconds to minutes.
+DEPTHS = [*CONTACTS, "exact-penetration", "vps", "vps-field", "ccd-hull", "drake", "mujoco"]
 SCENES = ["cube", "pairs", "pile", "robot", "dust", "still", "all-move", "giant", "clusters", "shuffled"]
 LARGE_SCENES = ["cube", "shuffled", "dust"]
 GENERATED = "elephant|bunny|torus-knot-(10k|100k|1m)"
@@ -93,6 +110,27 @@ def rival_steps():
                           "--volumes", "5", "--sample", "4", algorithms=("exact", "fcl-obbrss", "fcl-rss", "rivals"))]
 
 
+def cast_steps():
+    """Every solver of FCL, and how many motions sampling misses; parry's casts take seconds."""
+    four = "|".join(FOUR_PAIRS)
+    return [rows("casts.json", 9, f"--benchmark_filter=^cast/algorithm:(exact|sampled|fcl-cast|bullet-hull)/pair:({four})/.*/step:10$",
+                 "-p", "fcl-cast:solver=naive,oriented,advancement", "--sample", "64", "--budget", "480"),
+            rows("sampled.json", 2, "--benchmark_filter=^cast/algorithm:(exact|sampled)/pair:elephant/motion:tumble/step:(1|10|100)$",
+                 "-p", "sampled:steps=4,16,64,256", "--sample", "512", "--budget", "90"),
+            rows("parry.json", 2, "--benchmark_filter=^cast/algorithm:(exact|parry)/pair:(elephant|bunny|ship)/motion:translation/step:10$",
+                 "--sample", "16", "--budget", "90")]
+
+
+def contact_steps():
+    contacts, depths, four, six = ("|".join(names) for names in (CONTACTS, DEPTHS, FOUR_PAIRS, DEPTH_PAIRS))
+    return [rows("contacts.json", 8, "--isolate=third-party",
+                 f"--benchmark_filter=^contacts/algorithm:({contacts})/pair:({four})/volume:(01|10)$", "--sample", "16", "--budget", "300"),
+            rows("depths.json", 5, "--isolate=third-party",
+                 f"--benchmark_filter=^depth/algorithm:({depths})/pair:({four})/volume:05$", "--sample", "16", "--budget", "240"),
+            rows("intervals.json", 5, f"--benchmark_filter=^depth/algorithm:exact-penetration/pair:({six})/volume:(01|05|10)$", "--sample",
+                 "32", "--budget", "300")]
+
+
 def scene_steps():
     steps = []
     for family in SCENES:
@@ -147,6 +185,8 @@ def parts():
         Part("generate", "making a configuration: ray cast and FCL's advancement",
              [rows("generate.json", 4, f"--benchmark_filter=^generate/distance/.*:({GENERATED})$")]),
         Part("equivalent", "the paper's table: errors at equal time", equal_time),
+        Part("casts", "first contact of two moving meshes", cast_steps(), setup=("bench/rivals/setup",)),
+        Part("contacts", "contacts and penetration depths", contact_steps(), setup=("bench/rivals/setup",)),
         Part("scenes", "scenes of 1,000 and 100,000 bodies", scene_steps()),
         Part("deform", "meshes that deform: refitting their trees against building them anew",
              [rows("deform.json", 25, "--suite", "deform")]),

@@ -415,7 +415,8 @@ TEST(TriangleDistance, MatchesHighPrecisionOnSegments) {
   RecordProperty("worst_error_e17", static_cast<int>(worst * 1e17));
 }
 
-// About one in 20,000 of these cases is hard: a flat triangle 1e-13 to 1e-14 times as high as long, within that of the point.
+// About one in 20,000 of these cases is hard: a flat triangle 1e-13 to 1e-14 times as high as long, within that of the
+// point.
 TEST(TriangleDistance, MatchesHighPrecisionOnAPointAndATriangle) {
   double worst = 0.0;
   for (std::uint64_t seed = 11; seed < 51; ++seed) {

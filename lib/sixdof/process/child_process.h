@@ -78,8 +78,8 @@ class ChildProcess {
   void end();
 
   std::shared_ptr<const char> thread_;  ///< Stands for the thread that made it.
-  pid_t process_ = -1;            ///< The program's keeper, which ends as the program does.
-  int input_ = -1, output_ = -1;  ///< Of the program.
+  pid_t process_ = -1;                  ///< The program's keeper, which ends as the program does.
+  int input_ = -1, output_ = -1;        ///< Of the program.
   int wait_status_ = 0;
   bool ended_ = false;
   bool noted_memory_ = false;
