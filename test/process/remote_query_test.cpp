@@ -7,6 +7,7 @@
 #include <latch>
 #include <memory>
 #include <random>
+#include <set>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -357,6 +358,17 @@ TEST(Script, TwoPairsAtATimeHaveTwoProcesses) {
   const auto first = algorithm->prepare(torus(), cone(), algorithm->settings());
   const auto second = algorithm->prepare(torus(), torus(), algorithm->settings());
   EXPECT_NE(first->distance(Pose()).value.distance, second->distance(Pose()).value.distance);
+}
+
+TEST(Script, PairsThatAreOneSetTakeTheProcessesOfTheSetBefore) {
+  const auto algorithm = script(R"(echo "{\"distance\": $$}")", {.reuse = true}, R"({"prepared":true})", "\"again\"");
+  std::set<double> processes;
+  for (int i = 0; i < 3; ++i) {
+    const auto first = algorithm->prepare(torus(), cone(), algorithm->settings());
+    const auto second = algorithm->prepare(torus(), torus(), algorithm->settings());
+    processes.insert({first->distance(Pose()).value.distance, second->distance(Pose()).value.distance});
+  }
+  EXPECT_EQ(processes.size(), 2);
 }
 
 TEST(Script, AProcessOfAnotherThreadIsNotTaken) {

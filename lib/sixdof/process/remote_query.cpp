@@ -116,7 +116,7 @@ RemoteQuery::~RemoteQuery() {
 /// what the pair before has left behind: a new process is to be asked then
 bool RemoteQuery::take_spare(const Mesh& a, const Mesh& b) {
   if (!program_.spare) return false;
-  SpareProcess::Parts parts = program_.spare->take();
+  SpareProcesses::Parts parts = program_.spare->take();
   if (!parts.process) return false;
   files_ = std::move(parts.files);
   process_ = std::move(parts.process);

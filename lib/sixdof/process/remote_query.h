@@ -26,17 +26,17 @@ struct ProcessLimits {
   bool reuse = false;
 };
 
-/// The process of a pair that is no longer needed.
-class SpareProcess;
+/// Processes of pairs that are no longer needed.
+class SpareProcesses;
 
 /// A program that answers the protocol (README.md).
 struct RemoteProgram {
   std::vector<std::string> words;  ///< Program and arguments.
   ProcessLimits limits;
-  std::shared_ptr<SpareProcess> spare = nullptr;  ///< Of all queries of this program, if the limits say `reuse`.
+  std::shared_ptr<SpareProcesses> spare = nullptr;  ///< Of all queries of this program, if the limits say `reuse`.
 };
 
-/// With a place for a spare process where the limits want one.
+/// With a place for spare processes where the limits want one.
 RemoteProgram remote_program(std::vector<std::string> words, const ProcessLimits& limits);
 
 /// What a program says of itself. @throws Error if it cannot be started, ends, is silent or answers nonsense

@@ -1,7 +1,9 @@
 #include <sixdof/process/spare_process.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
 
 #include <sixdof/process/remote_query.h>
@@ -40,8 +42,28 @@ std::vector<int> PairFiles::descriptors() const {
           triangles_b.descriptor()};
 }
 
+void SpareProcesses::put(Parts parts) {
+  Parts oldest;  // ends after the lock is free: that takes a while
+  const std::lock_guard lock(mutex_);
+  if (parts_.size() == k_most) {
+    oldest = std::move(parts_.front());
+    parts_.erase(parts_.begin());
+  }
+  parts_.push_back(std::move(parts));
+}
+
+SpareProcesses::Parts SpareProcesses::take() {
+  const std::lock_guard lock(mutex_);
+  const auto is_mine = [](const Parts& each) { return each.process->ends_with_this_thread(); };
+  const auto last = std::find_if(parts_.rbegin(), parts_.rend(), is_mine);
+  if (last == parts_.rend()) return {};
+  Parts parts = std::move(*last);
+  parts_.erase(std::prev(last.base()));
+  return parts;
+}
+
 RemoteProgram remote_program(std::vector<std::string> words, const ProcessLimits& limits) {
-  return {std::move(words), limits, limits.reuse ? std::make_shared<SpareProcess>() : nullptr};
+  return {std::move(words), limits, limits.reuse ? std::make_shared<SpareProcesses>() : nullptr};
 }
 
 }  // namespace sixdof

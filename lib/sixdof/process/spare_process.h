@@ -1,8 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <mutex>
-#include <utility>
 #include <vector>
 
 #include <sixdof/geometry/mesh.h>
@@ -36,29 +36,25 @@ struct PairFiles {
   SharedCounter counter;
 };
 
-/// The process of a pair that is no longer needed, for a later one.
-class SpareProcess {
+/// Processes of pairs that are no longer needed, for later ones.
+class SpareProcesses {
  public:
   struct Parts {
     std::unique_ptr<PairFiles> files;
     std::unique_ptr<ChildProcess> process;
     protocol::Greeting greeting;
   };
-  /// One at most is kept: another one ends.
-  void put(Parts parts) {
-    const std::lock_guard lock(mutex_);
-    parts_ = std::move(parts);
-  }
-  /// Without a process if there is none that this thread made: one of another thread may end at any time, with it.
-  Parts take() {
-    const std::lock_guard lock(mutex_);
-    if (!parts_.process || !parts_.process->ends_with_this_thread()) return {};
-    return std::exchange(parts_, {});
-  }
+  /// Keeps it; beyond k_most the oldest one ends.
+  void put(Parts parts);
+  /// The latest that this thread made: one of another thread may end at any time, with it. Without a process if there
+  /// is none.
+  Parts take();
+
+  static constexpr std::size_t k_most = 8;
 
  private:
   std::mutex mutex_;
-  Parts parts_;
+  std::vector<Parts> parts_;  ///< The oldest first.
 };
 
 }  // namespace sixdof
