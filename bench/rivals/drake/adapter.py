@@ -4,8 +4,9 @@ collide: HasCollisions(). distance: ComputeSignedDistancePairClosestPoints(), 0 
 contact of a compliant A and a rigid B (https://drake.mit.edu/doxygen_cxx/group__hydroelastic__user__guide.html). A's
 pressure is its modulus, here 1, times a field that is 0 on the boundary of the hull and 1 at its middle, linear in each
 tetrahedron between. The force is the sum of pressure x area x normal at the centroids of the polygons where B's hull cuts
-A's, as in Drake's own discrete solver; the penalty is the sum of pressure x area. Its law is nearest to that of a volume:
-area times depth, for small depths. The sum is a loop in Python, which takes most of the time of respond.
+A's, as in Drake's own discrete solver; the penalty is the sum of pressure x area. Its law is that of a depth, with a field
+of its own in place of the depth. B's surface makes the force: there is none where A is inside B. The sum is a loop in Python,
+which takes most of the time of respond.
 No profiles: Drake's documentation advises no settings for single queries.
 """
 
@@ -81,7 +82,7 @@ class Query:
     def respond(self, pose):
         self.empty(pose)
         reference = numpy.array(sixdof_rival.moved(pose, self.centre_b))
-        force, torque, volume = numpy.zeros(3), numpy.zeros(3), 0.0
+        force, torque, penalty = numpy.zeros(3), numpy.zeros(3), 0.0
         for surface in self.ask().ComputeContactSurfaces(HydroelasticContactRepresentation.kPolygon):
             mesh, pressure = surface.poly_mesh_W(), surface.poly_e_MN()
             faces = range(mesh.num_faces())
@@ -93,11 +94,11 @@ class Query:
             each = (towards_b * value * area)[:, None] * normal
             force += each.sum(0)
             torque += numpy.cross(centroid - reference, each).sum(0)
-            volume += float(value @ area)
-        return {"penalty": volume, "force": force, "torque": torque, "reference": reference}
+            penalty += float(value @ area)
+        return {"penalty": penalty, "force": force, "torque": torque, "reference": reference}
 
 
-sixdof_rival.serve(Query, name="drake", version=importlib.metadata.version("drake"), body="convex_hull", law="volume",
+sixdof_rival.serve(Query, name="drake", version=importlib.metadata.version("drake"), body="convex_hull", law="depth",
                    answers=["collide", "distance", "respond", "contacts"], depth="bodies",
                    limits=["own_direction", "distance_of_bodies"],
                    summary="Drake from Python: convex hulls, hydroelastic force of a compliant A on a rigid B")
