@@ -10,6 +10,7 @@
  *       cast(motion) {}                 // null, or {t} and, optional, a, b, normal
  *       contacts(pose, most) {}         // {points, normals, depths}, at most `most` of each; normals from A to B
  *       footprint() {}                  // optional: {bytes, counts}
+ *       release() {}                    // optional: gives back what no garbage collector sees, before the next pair
  *     }
  *
  * It needs the methods that it answers only. `vertices` is a Float64Array, `triangles` a Uint32Array, three numbers a row;
@@ -80,7 +81,7 @@ class Server {
   constructor(Query, description) {
     this.Query = Query;
     // Not "progress": Node cannot map a file, and a write would be a call of the system in each query.
-    this.hello = { protocol: 1, parameters: [], ...description, can: ["time"] };
+    this.hello = { protocol: 1, parameters: [], ...description, can: ["time", "again"] };
     this.query = null;
   }
 
@@ -104,6 +105,7 @@ class Server {
   }
 
   prepare(request) {
+    if (this.query?.release) this.query.release();
     this.query = null;
     const a = readMesh(request.a);
     const same = request.a.vertices === request.b.vertices && request.a.triangles === request.b.triangles;

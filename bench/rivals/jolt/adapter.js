@@ -31,10 +31,12 @@ async function main() {
       point.Set(mesh.vertices[i], mesh.vertices[i + 1], mesh.vertices[i + 2]);
       settings.mPoints.push_back(point);
     }
+    Jolt.destroy(point);
     const result = settings.Create();
     if (!result.IsValid()) throw new BadMesh(`${mesh.name}: ${result.HasError() ? result.GetError().c_str() : "no hull"}`);
     const shape = result.Get();
     shape.AddRef(); // Create() returns the same object each time
+    Jolt.destroy(settings);
     return shape;
   }
 
@@ -43,6 +45,7 @@ async function main() {
       const radius = Number(settings.convex_radius);
       const shapeA = hull(a, radius);
       this.b = a === b ? shapeA : hull(b, radius);
+      this.shapes = a === b ? [shapeA] : [shapeA, this.b];
       this.one = new Jolt.Vec3(1, 1, 1);
       this.origin = new Jolt.RVec3(0, 0, 0);
       this.a = new Jolt.TransformedShape();
@@ -61,6 +64,13 @@ async function main() {
       this.any = new Jolt.CollideShapeAnyHitCollisionCollector();
       this.closest = new Jolt.CollideShapeClosestHitCollisionCollector();
       this.filter = new Jolt.ShapeFilter();
+    }
+
+    release() {
+      for (const key of ["one", "origin", "a", "pose", "axis", "place", "touching", "apart", "any", "closest", "filter"]) {
+        Jolt.destroy(this[key]);
+      }
+      for (const shape of this.shapes) shape.Release();
     }
 
     /** Of the centre of mass of B's hull, about which Jolt's hull has its points. */
