@@ -7,6 +7,7 @@ import importlib.machinery
 import importlib.util
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -206,6 +207,16 @@ class Steps(unittest.TestCase):
                     self.assertEqual("--resume" in words, begun, words)
                     self.assertIn(str(folder / step.file), words)
                     (folder / (step.file + ".journal")).touch()
+
+    def test_short_results_keep_the_counters_of_their_tables(self):
+        fields = {"pair", "percent", "bodies", "algorithm", "time_us", "p50_us", "faults"}
+        found = 0
+        for mark in documents.MARK.finditer((ROOT / "bench/RESULTS.md").read_text(encoding="utf-8")):
+            table, _, columns = mark["what"].partition(" | columns ")
+            if re.match("report (contacts|depths) ", table):
+                found += 1
+                self.assertLessEqual(set(columns.split()) - fields, set(parts.KEPT))
+        self.assertEqual(found, 3)
 
     def test_measurements_are_not_published(self):
         short = parts.compact({"context": {}, "benchmarks": [], "measurements": [1], "paper": [{"printed": 2.4}]})
