@@ -20,6 +20,10 @@ target_compile_options(sixdof_build_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align
   # Designated initializers may leave members to their defaults; gcc 12 sees overlaps in std::string that are not there.
   -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64|ARM64)$")
+  # Products of Eigen's small matrices would fuse them all the same, by the functions for NEON that this macro chooses.
+  target_compile_options(sixdof_build_flags INTERFACE -U__ARM_FEATURE_FMA)
+endif()
 if(SIXDOF_SANITIZE)
   target_compile_options(sixdof_build_flags INTERFACE -fsanitize=${SIXDOF_SANITIZE} -fno-sanitize-recover=all)
   target_link_options(sixdof_build_flags INTERFACE -fsanitize=${SIXDOF_SANITIZE})
