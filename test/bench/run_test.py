@@ -160,7 +160,7 @@ class Run(unittest.TestCase):
         done = self.run_it("--all-algorithms", "--benchmark_min_time=0.001", rows)
         self.assertEqual(done.returncode, 0, done.stderr)
         context = json.loads(self.result().read_text())["context"]
-        self.assertEqual((context["sample"], context["budget_s"]), ("200", "0"))
+        self.assertEqual((context["sample"], context["budget_s"]), ("200", "3000"))
         self.assertEqual(self.run_it("--all-algorithms", "--benchmark_list_tests=true", rows).stdout.splitlines()[-1],
                          "collide/algorithm:exact/pair:torus-knot-1m/distance:05")
 
