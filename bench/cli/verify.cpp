@@ -151,8 +151,6 @@ void verify_again(const VerifyArguments& arguments, const ConfigurationSet& set,
 
 void verify(const VerifyArguments& arguments) {
   const ConfigurationSet set(arguments.file);
-  const SelectedAlgorithm selected = select_algorithm({.name = arguments.oracle, .parameters = {}});
-  const Traits& oracle = selected.algorithm->traits();
   const MeshIdentity& a_identity = set.description().a;
   const MeshIdentity& b_identity = set.description().b;
   const Mesh a = find_mesh(a_identity, set.path(), arguments.a);
@@ -160,6 +158,8 @@ void verify(const VerifyArguments& arguments) {
   const Mesh b = copy ? a : find_mesh(b_identity, set.path(), arguments.b);
   warn_of_sizes("sixdof", a_identity, b_identity);
   if (!arguments.again.empty()) return verify_again(arguments, set, a, b);
+  const SelectedAlgorithm selected = select_algorithm({.name = arguments.oracle, .parameters = {}});
+  const Traits& oracle = selected.algorithm->traits();
   if (arguments.motions > 0) return verify_motions(arguments, set, a, b, *selected.algorithm);
   Verdict verdict;
   {
