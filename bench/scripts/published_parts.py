@@ -113,9 +113,9 @@ def rival_steps():
 def cast_steps():
     """Every solver of FCL, and how many motions sampling misses; parry's casts take seconds."""
     four = "|".join(FOUR_PAIRS)
-    return [rows("casts.json", 9, f"--benchmark_filter=^cast/algorithm:(exact|sampled|fcl-cast|bullet-hull)/pair:({four})/.*/step:10$",
+    return [rows("casts.json", 9, f"--benchmark_filter=^cast/algorithm:(exact|sampled|fcl-cast@.*|bullet-hull)/pair:({four})/.*/step:10$",
                  "-p", "fcl-cast:solver=naive,oriented,advancement", "--sample", "64", "--budget", "480"),
-            rows("sampled.json", 2, "--benchmark_filter=^cast/algorithm:(exact|sampled)/pair:elephant/motion:tumble/step:(1|10|100)$",
+            rows("sampled.json", 2, "--benchmark_filter=^cast/algorithm:(exact|sampled@.*)/pair:elephant/motion:tumble/step:(1|10|100)$",
                  "-p", "sampled:steps=4,16,64,256", "--sample", "512", "--budget", "90"),
             rows("parry.json", 2, "--benchmark_filter=^cast/algorithm:(exact|parry)/pair:(elephant|bunny|ship)/motion:translation/step:10$",
                  "--sample", "16", "--budget", "90")]

@@ -196,6 +196,22 @@ class Short(unittest.TestCase):
 
 
 class Steps(unittest.TestCase):
+    def test_every_value_of_a_parameter_has_rows(self):
+        found = 0
+        for step in (step for part in parts.parts() for step in part.steps):
+            words = [word for word in step.command[1:] if word not in ("-o", "{out}")]
+            lists = [words[i + 1] for i, word in enumerate(words) if word == "-p" and "," in words[i + 1]]
+            if not lists:
+                continue
+            done = subprocess.run([pathlib.Path(SIXDOF).with_name("sixdof-bench"), *words, "--benchmark_list_tests"], cwd=ROOT,
+                                  check=True, capture_output=True, text=True)
+            for name, values in (entry.split("=") for entry in lists):
+                algorithm, parameter = name.split(":")
+                for value in values.split(","):
+                    found += 1
+                    self.assertIn(f"/algorithm:{algorithm}@{parameter}={value}/", done.stdout)
+        self.assertEqual(found, 7)
+
     def test_what_broke_off_is_continued(self):
         steps = [step for part in parts.parts() for step in part.steps if step.resumes]
         self.assertIn("equivalent.json", [step.file for step in steps])

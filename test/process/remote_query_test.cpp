@@ -4,34 +4,26 @@
 #include <bit>
 #include <chrono>
 #include <cstring>
-#include <latch>
 #include <memory>
 #include <random>
-#include <set>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/model_catalogue.h>
 
 #include "deadly_query.h"
+#include "script.h"
 
 namespace sixdof {
 namespace {
 
+using test::cone;
+using test::script;
+using test::torus;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-const Mesh& torus() {
-  static const Mesh mesh = load_model("torus-1k");
-  return mesh;
-}
-const Mesh& cone() {
-  static const Mesh mesh = load_model("cone-1k");
-  return mesh;
-}
 
 /// Poses near contact, some of them faulty.
 std::vector<Pose> poses(std::size_t count) {
@@ -53,17 +45,6 @@ std::unique_ptr<RemoteQuery> remote(const std::string& algorithm, ProcessLimits 
   const RemoteProgram program = serving(algorithm, limits);
   const Traits traits = ask_greeting(program).traits;
   return std::make_unique<RemoteQuery>(program, traits, torus(), cone(), Settings(traits.parameters));
-}
-
-/// A program in a shell that answers hello and prepare, then goes on with `rest`.
-std::unique_ptr<RemoteAlgorithm> script(const std::string& rest, ProcessLimits limits = {},
-                                        const std::string& prepared = R"({"prepared":true})",
-                                        const std::string& can = "") {
-  const std::string greeting =
-      R"({"protocol":1,"name":"s","version":"1","answers":["collide","distance"],"can":[)" + can + "]}";
-  const std::string text = "while read line; do case $line in *hello*) echo '" + greeting + "';; *prepare*) echo '" +
-                           prepared + "';; *) " + rest + ";; esac; done";
-  return RemoteAlgorithm::external("s", "sh -c \"$(cat <<'END'\n" + text + "\nEND\n)\"", limits);
 }
 
 std::size_t count_faulty(const std::vector<Pose>& list) {
@@ -330,101 +311,6 @@ TEST(Script, GivesUpAfterTooManyDeathsInARow) {
               StartsWith("not asked after 20 crashes or timeouts in a row, the last: crashed: ended with"));
   as_remote(*query)->forgive();
   EXPECT_EQ(count(Status::crashed), static_cast<std::ptrdiff_t>(list.size())) << "of another row";
-}
-
-/// The processes of pairs that are prepared one after the other.
-std::vector<double> processes(const std::string& can, ProcessLimits limits) {
-  const auto algorithm = script(R"(echo "{\"distance\": $$}")", limits, R"({"prepared":true})", can);
-  std::vector<double> list;
-  for (int i = 0; i < 3; ++i) {
-    const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
-    list.push_back(query->distance(Pose()).value.distance);
-  }
-  return list;
-}
-
-TEST(Script, APairMayTakeTheProcessOfTheOneBefore) {
-  const std::vector<double> same = processes("\"again\"", {.reuse = true});
-  EXPECT_EQ(same[0], same[1]);
-  EXPECT_EQ(same[0], same[2]);
-  for (const std::vector<double>& each : {processes("\"again\"", {}), processes("", {.reuse = true})}) {
-    EXPECT_NE(each[0], each[1]);
-    EXPECT_NE(each[1], each[2]);
-  }
-}
-
-TEST(Script, TwoPairsAtATimeHaveTwoProcesses) {
-  const auto algorithm = script(R"(echo "{\"distance\": $$}")", {.reuse = true}, R"({"prepared":true})", "\"again\"");
-  const auto first = algorithm->prepare(torus(), cone(), algorithm->settings());
-  const auto second = algorithm->prepare(torus(), torus(), algorithm->settings());
-  EXPECT_NE(first->distance(Pose()).value.distance, second->distance(Pose()).value.distance);
-}
-
-TEST(Script, PairsThatAreOneSetTakeTheProcessesOfTheSetBefore) {
-  const auto algorithm = script(R"(echo "{\"distance\": $$}")", {.reuse = true}, R"({"prepared":true})", "\"again\"");
-  std::set<double> processes;
-  for (int i = 0; i < 3; ++i) {
-    const auto first = algorithm->prepare(torus(), cone(), algorithm->settings());
-    const auto second = algorithm->prepare(torus(), torus(), algorithm->settings());
-    processes.insert({first->distance(Pose()).value.distance, second->distance(Pose()).value.distance});
-  }
-  EXPECT_EQ(processes.size(), 2);
-}
-
-TEST(Script, AProcessOfAnotherThreadIsNotTaken) {
-  // It would end with that thread, in the middle of a query.
-  const auto algorithm = script(R"(echo "{\"distance\": $$}")", {.reuse = true}, R"({"prepared":true})", "\"again\"");
-  double of_thread = 0.0;
-  std::latch is_spare(1), may_end(1);
-  std::jthread thread([&] {
-    of_thread = algorithm->prepare(torus(), cone(), algorithm->settings())->distance(Pose()).value.distance;
-    is_spare.count_down();
-    may_end.wait();
-  });
-  is_spare.wait();
-  const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
-  const double first = query->distance(Pose()).value.distance;
-  may_end.count_down();
-  thread.join();
-  EXPECT_NE(first, of_thread);
-  EXPECT_EQ(query->distance(Pose()).value.distance, first);
-}
-
-TEST(Script, AProcessThatReadsFilesAgainSeesTheNextPair) {
-  // The size of the vertices of A, from its file.
-  const auto algorithm = script(R"(echo "{\"distance\": $(wc -c </proc/self/fd/3 | tr -d ' ')}")", {.reuse = true},
-                                R"({"prepared":true})", "\"again\"");
-  for (const Mesh* const mesh : {&torus(), &cone(), &torus()}) {
-    const auto query = algorithm->prepare(*mesh, *mesh, algorithm->settings());
-    EXPECT_EQ(query->distance(Pose()).value.distance, 24.0 * static_cast<double>(mesh->vertices().size()));
-  }
-}
-
-TEST(Script, ARefusalOfASecondPairIsAskedOfANewProcess) {
-  // The second prepare of a process fails, for what the first has left behind.
-  const std::string leaky =
-      R"sh('"$(if [ -z "$full" ]; then echo "{\"prepared\":true}"; else echo "{\"error\":\"full\"}"; fi)"; full='1)sh";
-  const auto algorithm = script(R"(echo "{\"distance\": $$}")", {.reuse = true}, leaky, "\"again\"");
-  std::vector<double> list;
-  for (int i = 0; i < 2; ++i) {
-    const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
-    list.push_back(query->distance(Pose()).value.distance);
-  }
-  EXPECT_NE(list[0], list[1]);
-}
-
-TEST(Script, AProcessThatWasEndedIsNotTakenAgain) {
-  const auto algorithm = script(R"(case $line in *collide*) exit 1;; *) echo "{\"distance\": $$}";; esac)",
-                                {.reuse = true}, R"({"prepared":true})", "\"again\"");
-  double first = 0.0;
-  {
-    const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
-    first = query->distance(Pose()).value.distance;
-    EXPECT_EQ(query->collide(Pose()).status, Status::crashed);
-    EXPECT_NE(query->distance(Pose()).value.distance, first);
-  }
-  const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
-  EXPECT_NE(query->distance(Pose()).value.distance, first);
 }
 
 TEST(External, IsRefusedUnlessItGreets) {

@@ -15,9 +15,9 @@
 // where w = w0 + s u - t v is normal to u and v. With n = u x v that is
 //   s = -(w0 x v) . n / n^2,  t = -(w0 x u) . n / n^2,
 // which loses digits as u and v become parallel. Iterative refinement applies the same formula to the w that was
-// reached and brings w to the accuracy of its own rounding at any angle: each step multiplies the error by about (unit
-// roundoff / angle). At an angle of a few roundings the interior is closer than the border by at most a rounding of the
-// length.
+// reached: each step multiplies the error by about (unit roundoff / angle). What small angles leave of it lies along
+// the edges; a projection along the longer one removes it, so that w has the accuracy of its own rounding at any angle.
+// At an angle of a few roundings the interior is closer than the border by at most a rounding of the length.
 //
 // Zero is decided by exact predicates, and only where the computed distance is in doubt.
 
@@ -112,8 +112,6 @@ Solution solve_normal(const Vector3d& w0, const Vector3d& u, double uu, const Ve
     x.w = (w0 + x.s * u) - x.t * v;
   }
   if (refinements > 1) {
-    // What is left of the error lies along the edges: near the parallel, s and t were each off by much more than
-    // the distance of the lines. Along the longer one it is removed by a projection.
     if (uu >= vv) {
       x.s -= x.w.dot(u) / uu;
     } else {
