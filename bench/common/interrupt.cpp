@@ -69,7 +69,7 @@ void InterruptGuard::watch() {
   }
   // The standard streams are not flushed: the work may hold their locks.
   if (keep_) keep_();
-  remove_own_partials();
+  const auto none_is_made = remove_own_partials();
   erase_status_line();
   print_message(program_, "interrupted");
   ::_exit(k_exit_interrupted);

@@ -5,10 +5,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,10 +96,30 @@ TEST_F(AtomicFileTest, RemovesTheTemporaryFilesOfThisProcess) {
     std::ofstream(committed.temporary_path()) << "whole";
     committed.commit();
     ASSERT_EQ(file_count(), 3u);
-    remove_own_partials();
+    const auto lock = remove_own_partials();
   }
   EXPECT_EQ(file_count(), 2u);
   EXPECT_THROW(file.commit(), BadFile);
+}
+
+TEST_F(AtomicFileTest, NoneIsMadeByOtherThreadsWhileAProgramEnds) {
+  const pid_t ending = ::fork();
+  if (ending == 0) {
+    std::atomic<int> made{0};
+    std::thread work([&] {
+      for (;;) {
+        const AtomicFile file(directory_ / "x");
+        const PrivateFolder folder(directory_ / "y");
+        ++made;
+      }
+    });
+    while (made < 10) std::this_thread::yield();
+    const auto lock = remove_own_partials();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::_Exit(0);
+  }
+  ::waitpid(ending, nullptr, 0);
+  EXPECT_EQ(file_count(), 0u);
 }
 
 TEST_F(AtomicFileTest, KeepsTheModeOfAFileThatItReplaces) {

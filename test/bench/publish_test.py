@@ -130,6 +130,11 @@ class Marks(unittest.TestCase):
         with self.assertRaisesRegex(documents.Stale, "2 commits: abc, ghi"):
             documents.one_commit()
 
+    def test_a_section_with_a_commit_of_its_own_names_it(self):
+        text = (ROOT / "bench/RESULTS.md").read_text(encoding="utf-8")
+        for part in documents.OWN_COMMIT:
+            self.assertIn(f"<!--= parts {part}.commit -->", text)
+
 
 class Run(unittest.TestCase):
     def test_only_a_library_in_its_own_process_may_leave_a_row_without_an_answer(self):

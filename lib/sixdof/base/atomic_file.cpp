@@ -49,15 +49,12 @@ std::filesystem::path temporary_name(const std::filesystem::path& target, const 
   return directory_of(target) / fmt::format("{}{}.{:016x}{}", temporary_prefix(target), ::getpid(), random, k_partial);
 }
 
-/// Temporary files and folders of the objects that exist.
+/// Temporary files and folders of the objects that exist. What is made is added under the same lock, so that
+/// remove_own_partials() misses none.
 struct Partials {
   std::mutex mutex;
   std::set<std::filesystem::path> paths;
 
-  void add(const std::filesystem::path& path) {
-    const std::scoped_lock lock(mutex);
-    paths.insert(path);
-  }
   void erase(const std::filesystem::path& path) {
     const std::scoped_lock lock(mutex);
     paths.erase(path);
@@ -165,12 +162,15 @@ AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)
   }
   bool replaces = false;
   const mode_t mode = mode_for(replaced_, target_, replaces);
-  do {
-    temporary_ = temporary_name(replaced_, target_);
-    descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
-  } while (descriptor_ < 0 && errno == EEXIST);
-  if (descriptor_ < 0) throw_not_writable(target_, errno);
-  partials().add(temporary_);
+  {
+    const std::scoped_lock lock(partials().mutex);
+    do {
+      temporary_ = temporary_name(replaced_, target_);
+      descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+    } while (descriptor_ < 0 && errno == EEXIST);
+    if (descriptor_ < 0) throw_not_writable(target_, errno);
+    partials().paths.insert(temporary_);
+  }
   if (replaces && ::fchmod(descriptor_, mode) != 0) {
     const int failure = errno;
     discard();
@@ -216,12 +216,13 @@ void AtomicFile::commit() {
 
 PrivateFolder::PrivateFolder(const std::filesystem::path& target) {
   int made = 0;
+  const std::scoped_lock lock(partials().mutex);
   do {
     path_ = temporary_name(target, target);
     made = ::mkdir(path_.c_str(), S_IRWXU);
   } while (made != 0 && errno == EEXIST);
   if (made != 0) throw BadFile(target.string(), fmt::format("cannot be made: {}", std::strerror(errno)));
-  partials().add(path_);
+  partials().paths.insert(path_);
 }
 
 PrivateFolder::~PrivateFolder() {
@@ -243,11 +244,12 @@ void check_writable(const std::filesystem::path& target) {
   if (const int failure = close_file(probe.descriptor_)) throw_not_writable(target, failure);
 }
 
-void remove_own_partials() {
+std::unique_lock<std::mutex> remove_own_partials() {
   Partials& all = partials();
-  const std::scoped_lock lock(all.mutex);
+  std::unique_lock lock(all.mutex);
   std::error_code ignored;
   for (const std::filesystem::path& path : all.paths) std::filesystem::remove_all(path, ignored);
+  return lock;
 }
 
 void remove_stale_partials(const std::filesystem::path& target) {

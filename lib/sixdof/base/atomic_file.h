@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <mutex>
 #include <string_view>
 
 namespace sixdof {
@@ -84,7 +85,8 @@ int write_all(int descriptor, std::string_view content);
 
 /// Removes the temporary file of every AtomicFile of this process that is not committed. For a program that is about to
 /// end without unwinding; may be called from any thread.
-void remove_own_partials();
+/// @return while it is held, no thread makes a new one: constructors wait
+[[nodiscard]] std::unique_lock<std::mutex> remove_own_partials();
 
 /// Removes temporary files of `target` whose writers were killed. Files of processes that run on this machine stay. A
 /// writer on another machine would lose its file and fail in commit(): a target must have one writer at a time.
