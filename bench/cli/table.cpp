@@ -29,7 +29,8 @@ cpu to that of the first.
 --wide prints one table for each query of one file, with a line for each pair and algorithm and a column for each
 bucket. Angles and magnitudes are means over the buckets, errors the largest, faults sums. --against prints the time
 of the fastest of the named algorithms over that of --of: the median over the files, e.g. of several seeds, with the
-least and the greatest. It also takes `generate` rows and scenes (sixdof scene play --json).
+least and the greatest. It also takes `generate` rows and scenes (sixdof scene play --json). --slower 1 lists the rows
+in which --of loses.
 
 --over-objects: of a result of bench/scripts/collection, mean times over the objects, ratios to `exact` on the same
 object, and which kinds of objects take longer than their number of triangles alone says. --growth: of a result of
@@ -43,8 +44,8 @@ faults[] {what, count, of}, ratio_to_first, values} for each file. values are th
 
 struct Arguments {
   std::vector<std::string> files;
-  std::vector<std::string> against;
-  std::string of = "exact";
+  Against against;
+  bool p99 = false;
   bool markdown = false, json = false, wide = false, overview = false, over_objects = false, growth = false,
        paper = false;
 };
@@ -68,8 +69,10 @@ void print(const std::vector<ResultTable>& tables, const TableInput& input, cons
 }
 
 void run(const Arguments& arguments) {
-  if (!arguments.against.empty()) {
-    const Sheet sheet = sheet_against(TableInput(arguments.files, false), arguments.of, arguments.against);
+  if (!arguments.against.others.empty()) {
+    Against asked = arguments.against;
+    if (arguments.p99) asked.time = results::RivalTime::p99;
+    const Sheet sheet = sheet_against(TableInput(arguments.files, false), asked);
     fmt::print("{}", arguments.markdown ? as_markdown(sheet) : as_text(sheet));
     return;
   }
@@ -124,17 +127,26 @@ void add_table_command(CLI::App& app) {
       ->excludes(over_objects)
       ->excludes(growth);
   auto* const against =
-      command->add_option("--against", arguments->against, "Only ratios to the fastest of these, e.g. 'fcl-*,ode'")
+      command
+          ->add_option("--against", arguments->against.others, "Only ratios to the fastest of these, e.g. 'fcl-*,ode'")
           ->type_name("ALGORITHM,...")
           ->delimiter(',')
           ->allow_extra_args(false)
           ->excludes(json)
           ->excludes(over_objects)
           ->excludes(growth);
-  command->add_option("--of", arguments->of, "Algorithm whose time is compared by --against")
+  command->add_option("--of", arguments->against.algorithm, "Algorithm whose time is compared by --against")
       ->type_name("ALGORITHM")
       ->needs(against)
       ->capture_default_str();
+  command->add_flag("--p99", arguments->p99, "By --against compare what 99 % of the queries stay below, not means")
+      ->needs(against);
+  command
+      ->add_option("--slower", arguments->against.slower,
+                   "Of --against only where --of takes more than FACTOR times as long, the worst first")
+      ->type_name("FACTOR")
+      ->check(CLI::PositiveNumber)
+      ->needs(against);
   command->callback([arguments] { run(*arguments); });
   add_examples(*command,
                "sixdof-bench --benchmark_filter=/algorithm:exact/pair:torus-knot-10k/distance:05 --sample 32 "

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <sixdof/results/rivals.h>
 #include <sixdof/results/row_group.h>
 
 /// What `sixdof table` does: puts the rows of result files side by side (table_lines.cpp), chooses columns
@@ -113,11 +114,19 @@ std::vector<std::string> lines_below_overview();
 /// (results/paper_scenarios.h).
 Sheet paper_sheet_of(const TableInput& input);
 
+/// What sheet_against() compares.
+struct Against {
+  std::string algorithm = "exact";
+  std::vector<std::string> others;  ///< Names, in which * stands for any part.
+  results::RivalTime time = results::RivalTime::mean;
+  std::optional<double> slower;  ///< Only where the algorithm takes more than so many times as long, the worst first.
+};
+
 /// A line per query, bodies and bucket (or target, or scene): the algorithm's time, that of the fastest of the others,
 /// their ratio and how far it spreads over the files, e.g. of several seeds (results/rivals.h). Rows with a fault stand
 /// below and count for nothing.
 /// @throws BadArgument if there is nothing to compare
-Sheet sheet_against(const TableInput& input, const std::string& algorithm, const std::vector<std::string>& against);
+Sheet sheet_against(const TableInput& input, const Against& asked);
 
 /// What stands once, above and below all tables.
 std::vector<std::string> lines_above(const TableInput& input);

@@ -20,12 +20,24 @@ std::string number(double value, double least) {
 
 }  // namespace
 
-Sheet sheet_against(const TableInput& input, const std::string& algorithm, const std::vector<std::string>& against) {
+Sheet sheet_against(const TableInput& input, const Against& asked) {
+  const auto& [algorithm, against, time, slower] = asked;
   Sheet sheet;
   sheet.title = fmt::format("{} against the fastest of {}", algorithm, fmt::join(against, ", "));
+  if (time == results::RivalTime::p99) sheet.title += ", p99";
+  if (slower) sheet.title += fmt::format(": where it takes more than {:g} times as long", *slower);
   sheet.columns = {{"", "pair", true},        {"", "query", true}, {"", "place", true}, {"", algorithm + ", us"},
                    {"", "fastest other, us"}, {"", "which", true}, {"", "ratio"},       {"", "least..greatest"}};
-  for (const results::Rivalry& each : results::rivalries(input.groups, algorithm, against)) {
+  std::vector<results::Rivalry> rivalries = results::rivalries(input.groups, algorithm, against, time);
+  if (rivalries.empty()) {
+    throw BadArgument(fmt::format("no rows without a fault of both {} and {}", algorithm, fmt::join(against, ", ")));
+  }
+  const auto ratio = [](const results::Rivalry& each) { return results::median(each.ratios()); };
+  if (slower) {
+    std::erase_if(rivalries, [&](const results::Rivalry& each) { return ratio(each) * *slower >= 1.0; });
+    std::ranges::stable_sort(rivalries, {}, ratio);
+  }
+  for (const results::Rivalry& each : rivalries) {
     const std::vector<double> ratios = each.ratios();
     const auto [least, greatest] = std::ranges::minmax(ratios);
     const std::set<std::string> names(each.rivals.begin(), each.rivals.end());
@@ -33,9 +45,6 @@ Sheet sheet_against(const TableInput& input, const std::string& algorithm, const
                            us(results::median(each.rival_ns)), fmt::format("{}", fmt::join(names, ", ")),
                            number(results::median(ratios), least),
                            fmt::format("{}..{}", number(least, least), number(greatest, least))});
-  }
-  if (sheet.lines.empty()) {
-    throw BadArgument(fmt::format("no rows without a fault of both {} and {}", algorithm, fmt::join(against, ", ")));
   }
   for (const results::RowGroup& group : input.groups) {
     const std::string& name = group.fields().algorithm;

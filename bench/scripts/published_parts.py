@@ -95,6 +95,15 @@ def object_steps(script, minutes, *words, algorithms=("exact", *FCL, "bullet-gim
             Step(f"{script}/tables.txt", [f"bench/scripts/{script}", *folder, "--report"], 0.1, prints=True)]
 
 
+def loss_steps():
+    """Every object with three partners, and the rows in which another library is faster than `exact`."""
+    others = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts", "bullet-gimpact", "ode"]
+    table = ["sixdof", "table", "{folder}/collection/results.json", "--against", ",".join(others), "--markdown", "--slower"]
+    return [object_steps("collection", 25, "--partners", "self,seeded,tenth", "--distances", "0,1,10,30", "--volumes", "1,10",
+                         algorithms=("exact", *others))[0],
+            Step("mean.txt", [*table, "1"], 0.1, prints=True), Step("p99.txt", [*table, "1", "--p99"], 0.1, prints=True)]
+
+
 def rival_steps():
     """Two poses of a bucket are enough where a query takes seconds: 5 to 10 of them are asked of each pose."""
     slow = (f"^(collide|distance|respond)/algorithm:({'|'.join(['exact', *SLOW_RIVALS])})/"
@@ -196,6 +205,7 @@ def parts():
                    "--benchmark_filter=-algorithm:rivals/", "--sample", "200", "--budget", "900")]),
         Part("collection", "every algorithm on the objects of the collection",
              object_steps("collection", 25, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10")),
+        Part("losses", "objects on which another library is faster than `exact`", loss_steps()),
         Part("rivals", "what bench/rivals/setup has made ready, on four pairs and the collection",
              rival_steps(), setup=("bench/rivals/setup",)),
     ]

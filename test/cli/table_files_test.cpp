@@ -35,6 +35,26 @@ Json cast_row(const std::string& algorithm, const std::string& motion, double cp
   return json;
 }
 
+TEST_F(TableCommand, AgainstListsWhereAnAlgorithmIsSlowerTheWorstFirst) {
+  const std::string file = write(
+      "r.json", {row("distance", "exact", "distance", 1, 1000, {{"p99_ns", 9e4}}),
+                 row("distance", "fcl-rss", "distance", 1, 2000), row("distance", "exact", "distance", 5, 1100),
+                 row("distance", "fcl-rss", "distance", 5, 1000), row("distance", "exact", "distance", 9, 4000),
+                 row("distance", "fcl-rss", "distance", 9, 3000), row("distance", "fcl-obb", "distance", 9, 1000)});
+  const std::string all = printed("--against 'fcl-*' --markdown " + file);
+  EXPECT_THAT(all, HasSubstr("| p | distance | distance 1 % | 1 | 2 | fcl-rss | 2.0 | 2.0..2.0 |"));
+  const std::string slower = printed("--against 'fcl-*' --slower 1 --markdown " + file);
+  EXPECT_THAT(slower, Not(HasSubstr("distance 1 %")));
+  const std::size_t worst = slower.find("| distance 9 % | 4 | 1 | fcl-obb | 0.25 |");
+  const std::size_t next = slower.find("| distance 5 % | 1.1 | 1 | fcl-rss | 0.91 |");
+  EXPECT_LT(worst, next) << slower;
+  EXPECT_NE(next, std::string::npos) << slower;
+  EXPECT_THAT(printed("--against 'fcl-*' --slower 1.2 --markdown " + file), Not(HasSubstr("distance 5 %")));
+  EXPECT_THAT(printed("--against 'fcl-*' --slower 1 --p99 --markdown " + file),
+              AllOf(HasSubstr("| distance 1 % | 90 | 20 | fcl-rss | 0.22 |"), Not(HasSubstr("distance 9 %"))));
+  EXPECT_THAT(table("--against ode " + file).err, HasSubstr("no rows without a fault of both exact and ode"));
+}
+
 TEST_F(TableCommand, CastsHaveALinePerMotionAndWhatIsMissed) {
   const std::string file =
       write("r.json", {cast_row("x", "translation/10", 1500, 0, 0), cast_row("x", "tumble/0.01", 4000, 0, 0),

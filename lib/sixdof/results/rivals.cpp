@@ -28,7 +28,8 @@ std::vector<double> Rivalry::ratios() const {
   return list;
 }
 
-std::optional<double> rival_time(const RowGroup& group) {
+std::optional<double> rival_time(const RowGroup& group, RivalTime which) {
+  if (which == RivalTime::p99) return group.value(is_scene(group.fields()) ? "p99_frame_ns" : "p99_ns");
   if (group.fields().query == "generate") return group.value("ns_per_configuration");
   if (is_scene(group.fields())) return group.value("processor_ns");
   const auto time = group.mean_time();
@@ -41,7 +42,7 @@ bool fits(const std::string& name, std::span<const std::string> patterns) {
 }
 
 std::vector<Rivalry> rivalries(std::span<const RowGroup> groups, const std::string& algorithm,
-                               std::span<const std::string> against) {
+                               std::span<const std::string> against, RivalTime time) {
   struct Sides {
     std::optional<double> own_ns, rival_ns;
     std::string rival;
@@ -49,7 +50,7 @@ std::vector<Rivalry> rivalries(std::span<const RowGroup> groups, const std::stri
   using Key = std::tuple<std::string, std::string, std::string>;
   std::vector<std::pair<Key, std::map<std::size_t, Sides>>> all;
   for (const RowGroup& group : groups) {
-    const std::optional<double> ns = rival_time(group);
+    const std::optional<double> ns = rival_time(group, time);
     if (!ns || !(*ns > 0.0) || !group.faults.empty() || group.is_special()) continue;
     const Key key{group.fields().query, bodies_of(group.fields()), place_to_compare(group)};
     auto place = std::ranges::find(all, key, [](const auto& entry) { return entry.first; });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,13 +23,18 @@ struct Rivalry {
 };
 
 /// What is compared: of a query its mean_time(), of a `generate` row the time of a configuration, of a scene the
-/// processor time of a frame, the first apart.
-std::optional<double> rival_time(const RowGroup& group);
+/// processor time of a frame, the first apart. RivalTime::p99: the wall clock time that 99 % of the queries, or of the
+/// frames of a mesh that deforms, stay below; none of other rows.
+enum class RivalTime : std::uint8_t {
+  mean,
+  p99
+};
+std::optional<double> rival_time(const RowGroup& group, RivalTime time = RivalTime::mean);
 
 /// @param against names of other algorithms, in which * stands for any part
 /// @returns in the order of the groups; rows with a fault, of special orders and cold caches are left out
 std::vector<Rivalry> rivalries(std::span<const RowGroup> groups, const std::string& algorithm,
-                               std::span<const std::string> against);
+                               std::span<const std::string> against, RivalTime time = RivalTime::mean);
 
 /// Whether a name fits one of the patterns.
 bool fits(const std::string& name, std::span<const std::string> patterns);
