@@ -120,14 +120,21 @@ def rival_steps():
 
 
 def cast_steps():
-    """Every solver of FCL, and how many motions sampling misses; parry's casts take seconds."""
+    """Every solver of FCL, and how many motions sampling misses. Few motions where a query takes seconds: each is asked three
+    times or more."""
     four = "|".join(FOUR_PAIRS)
-    return [rows("casts.json", 9, f"--benchmark_filter=^cast/algorithm:(exact|sampled|fcl-cast@.*|bullet-hull)/pair:({four})/.*/step:10$",
-                 "-p", "fcl-cast:solver=naive,oriented,advancement", "--sample", "64", "--budget", "480"),
+    slow = ["-p", "fcl-cast:solver=oriented,advancement", "--benchmark_min_time=0.001"]
+    return [rows("casts.json", 3, f"--benchmark_filter=^cast/algorithm:(exact|sampled|fcl-cast|bullet-hull)/pair:({four})/.*/step:10$",
+                 "-p", "fcl-cast:solver=naive", "--sample", "64", "--budget", "150"),
+            rows("fcl.json", 8, "--benchmark_filter=^cast/algorithm:(exact|fcl-cast@.*)/pair:(elephant|bunny|ship)/.*/step:10$", *slow,
+                 "--sample", "8"),
+            rows("fcl-1m.json", 6,
+                 "--benchmark_filter=^cast/algorithm:(exact|fcl-cast@.*)/pair:torus-knot-1m/motion:(rotation|tumble)/step:10$", *slow,
+                 "--sample", "2"),
             rows("sampled.json", 2, "--benchmark_filter=^cast/algorithm:(exact|sampled@.*)/pair:elephant/motion:tumble/step:(1|10|100)$",
                  "-p", "sampled:steps=4,16,64,256", "--sample", "512", "--budget", "90"),
             rows("parry.json", 2, "--benchmark_filter=^cast/algorithm:(exact|parry)/pair:(elephant|bunny|ship)/motion:translation/step:10$",
-                 "--sample", "16", "--budget", "90")]
+                 "--sample", "8", "--benchmark_min_time=0.001")]
 
 
 def contact_steps():

@@ -215,7 +215,7 @@ class Steps(unittest.TestCase):
                 for value in values.split(","):
                     found += 1
                     self.assertIn(f"/algorithm:{algorithm}@{parameter}={value}/", done.stdout)
-        self.assertEqual(found, 7)
+        self.assertEqual(found, 8)
 
     def test_what_broke_off_is_continued(self):
         steps = [step for part in parts.parts() for step in part.steps if step.resumes]
