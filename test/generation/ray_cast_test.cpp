@@ -16,7 +16,7 @@
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/shapes.h"
-#include "rough_mesh.h"
+#include "../oracle/rough_mesh.h"
 
 namespace sixdof {
 namespace {

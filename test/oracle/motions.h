@@ -10,6 +10,7 @@
 #include <sixdof/oracle/advancement.h>
 #include <sixdof/oracle/cast_search.h>
 #include <sixdof/oracle/distance.h>
+#include <sixdof/oracle/translation_cast.h>
 
 #include "../geometry/shapes.h"
 #include "distance_truth.h"
@@ -24,11 +25,15 @@ struct Bodies {
   DistanceOracle oracle{a, b};
   DistanceQuery query{oracle};
   CastSearch search{oracle.tree_a(), oracle.tree_b()};
+  TranslationCast translations{oracle.tree_a(), oracle.tree_b()};
 
   Bodies(const Mesh& fixed, const Mesh& moving) : a(fixed), b(moving) {}
 
   /// What `exact` answers.
   Outcome<Impact> cast(const Motion& motion) {
+    if (const auto apart = translations.find(motion)) {
+      return apart->next ? search.find_after(motion, apart->t, *apart->next) : Impact{};
+    }
     if (query.collide(motion.start)) return Impact{.hit = true};
     return search.find(motion);
   }

@@ -7,6 +7,7 @@
 #include <sixdof/oracle/cast_search.h>
 #include <sixdof/oracle/distance.h>
 #include <sixdof/oracle/overlap.h>
+#include <sixdof/oracle/translation_cast.h>
 
 namespace sixdof {
 namespace {
@@ -60,10 +61,15 @@ class ExactQuery final : public Query {
   Outcome<Impact> cast(const Motion& motion) override {
     if (const char* const why = motion.why_invalid(); why != nullptr) return fail(Status::non_finite, why);
     if (const Status status = check(motion.start); status != Status::ok) return status;
+    if (motion.is_translation()) {
+      if (!translation_cast_) translation_cast_.emplace(oracle_.tree_a(), oracle_.tree_b());
+      // Bodies that come from outside are apart at the start.
+      if (const auto apart = translation_cast_->find(motion)) {
+        return apart->next ? decided(cast_search_.find_after(motion, apart->t, *apart->next)) : Impact{};
+      }
+    }
     if (distance_query_.collide(motion.start, warm_start_)) return contact_at_start(motion.start);
-    const Outcome<Impact> impact = cast_search_.find(motion);
-    if (!impact.ok()) return fail(impact.status, "the bodies are too close for too long to decide when they touch");
-    return impact;
+    return decided(cast_search_.find(motion));
   }
 
   Footprint footprint() const override {
@@ -71,6 +77,7 @@ class ExactQuery final : public Query {
     std::size_t bytes = oracle_.bytes();
     for (const auto* solid : {&solid_a_, &solid_b_}) bytes += *solid ? (*solid)->bytes() : 0;
     if (overlap_query_) bytes += overlap_query_->bytes();
+    if (translation_cast_) bytes += translation_cast_->bytes();
     return {bytes, {{"nodes_a", nodes(oracle_.tree_a())}, {"nodes_b", nodes(oracle_.tree_b())}}};
   }
 
@@ -79,6 +86,11 @@ class ExactQuery final : public Query {
     if (!is_finite(X_AB)) return fail(Status::non_finite, "the pose is not finite");
     if (!is_rotation(X_AB.R)) return fail(Status::failed, "the pose's matrix is not a rotation");
     return Status::ok;
+  }
+
+  Outcome<Impact> decided(const Outcome<Impact>& impact) {
+    if (!impact.ok()) return fail(impact.status, "the bodies are too close for too long to decide when they touch");
+    return impact;
   }
 
   /// With a common point where the surfaces have one, which bodies of which one is inside the other do not.
@@ -95,6 +107,7 @@ class ExactQuery final : public Query {
   DistanceOracle oracle_;
   DistanceQuery distance_query_;
   CastSearch cast_search_;
+  std::optional<TranslationCast> translation_cast_;  ///< Made by the first translation.
   bool warm_start_;
   std::optional<Solid> solid_a_;
   std::optional<Solid> solid_b_;  ///< None if both meshes are the same object.

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include <sixdof/configuration/bucket.h>
-#include <sixdof/generation/ray_cast_search.h>
 #include <sixdof/oracle/distance.h>
+#include <sixdof/oracle/ray_cast_search.h>
 
 namespace sixdof {
 namespace {

@@ -13,8 +13,8 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
-#include <sixdof/generation/ray_cast_search.h>
 #include <sixdof/geometry/triangle_distance.h>
+#include <sixdof/oracle/ray_cast_search.h>
 
 namespace sixdof {
 namespace {

@@ -27,6 +27,9 @@ constexpr double k_worth_waiting = 0.5;
 /// And if that is more than this part of the motion: where a gap is as small as rounding, it does not grow.
 constexpr double k_least_wait = 1e-6;
 
+/// At so many roundings the direction of the shortest line between triangles is known.
+constexpr double k_clear = 1e6;
+
 /// Triangles that touch within this part of the motion are bounded along their edges' cross products, too.
 constexpr double k_close = 1e-4;
 
@@ -299,7 +302,9 @@ Impact CastSearch::impact_of(std::uint32_t a, std::uint32_t b, double t) const {
   ClosestPoints closest = closest_at(t);
   impact.witness_a = closest.on_a;
   impact.witness_b = closest.on_b;
-  for (double back = std::max(k_resolution, least_time_); closest.distance < 1e6 * margin_ && back < 1e-4;
+  // It takes at least as long to go so far.
+  const double far = k_clear * margin_;
+  for (double back = std::max({k_resolution, least_time_, far / largest_speed_}); closest.distance < far && back < 1e-4;
        back *= 8.0) {
     closest = closest_at(std::max(0.0, t - back));
   }
@@ -309,19 +314,48 @@ Impact CastSearch::impact_of(std::uint32_t a, std::uint32_t b, double t) const {
   return impact;
 }
 
-Outcome<Impact> CastSearch::find(const Motion& motion) {
+double cast_margin(const Motion& motion, const Tree& a, const Tree& b) {
+  const double stretch = stretch_of(motion.start.R), reach = stretch * reach_of(b);
+  return 2.0 * motion.pose_error(reach) + k_gap_rounding * (a.radius() + stretch * b.radius()) +
+         1e-15 * (reach_of(a) + reach);
+}
+
+/// @return whether B moves
+bool CastSearch::begin(const Motion& motion) {
   counts_ = {};
   queue_.clear();
   motion_ = motion;
   stretch_ = stretch_of(motion.start.R);
-  const double reach = stretch_ * reach_of(b_), turn = motion.rotation.norm();
-  const double arm = reach + stretch_ * motion.reference.norm();
-  margin_ = 2.0 * motion.pose_error(reach) + k_gap_rounding * (a_.radius() + stretch_ * b_.radius()) +
-            1e-15 * (reach_of(a_) + reach);
-  largest_speed_ = motion.translation.norm() + turn * arm;
-  if (largest_speed_ == 0.0) return Impact{};
+  margin_ = cast_margin(motion, a_, b_);
+  const double arm = stretch_ * reach_of(b_) + stretch_ * motion.reference.norm();
+  largest_speed_ = motion.translation.norm() + motion.rotation.norm() * arm;
+  if (largest_speed_ == 0.0) return false;
   least_time_ = 4.0 * margin_ / largest_speed_;
-  push({0.0, 0, 0});
+  return true;
+}
+
+Outcome<Impact> CastSearch::find(const Motion& motion) { return begin(motion) ? search({0.0, 0, 0}) : Impact{}; }
+
+Outcome<Impact> CastSearch::find_after(const Motion& motion, double apart, TrianglePair next) {
+  if (!begin(motion)) return Impact{};
+  // Nothing touches before, so where this pair touches soon after there is no need to look at others.
+  const double soon = apart + std::max(k_resolution, 8.0 * least_time_);
+  const Waiting first{apart, NodePair::k_triangle + next.a, NodePair::k_triangle + next.b};
+  Impact impact;
+  for (Waiting pair = first; pair.t <= soon;) {
+    if (is_contact(Moment(*this, pair.t), pair.a, pair.b, impact)) {
+      return impact.t <= soon ? impact_of(pair.a, pair.b, apart) : search({apart, 0, 0});
+    }
+    if (queue_.empty()) break;
+    pair = pop();
+  }
+  queue_.clear();
+  return search({apart, 0, 0});
+}
+
+/// @param first before its time nothing touches
+Outcome<Impact> CastSearch::search(const Waiting& first) {
+  push(first);
   for (std::uint64_t taken = 0; !queue_.empty(); ++taken) {
     if (taken == k_most_pairs) return Status::failed;
     const Waiting next = pop();

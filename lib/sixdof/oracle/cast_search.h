@@ -7,6 +7,7 @@
 
 #include <sixdof/geometry/motion.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/geometry/triangle_distance.h>
 #include <sixdof/query/algorithm.h>
 
 /// When the surfaces of two meshes first touch while one of them moves: one search of both trees, ordered by time.
@@ -25,6 +26,9 @@
 /// lowered by the rounding of volumes and of poses.
 
 namespace sixdof {
+
+/// By how much gaps of two meshes may be off along a motion (length): the rounding of poses and of coordinates.
+double cast_margin(const Motion& motion, const Tree& a, const Tree& b);
 
 /// Work of one search.
 struct CastSearchCounts {
@@ -48,6 +52,10 @@ class CastSearch {
   /// @return Status::failed if the search gave up
   Outcome<Impact> find(const Motion& motion);
 
+  /// The same of surfaces that are known to be apart up to a time below 1.
+  /// @param next a pair of triangles that probably touches first
+  Outcome<Impact> find_after(const Motion& motion, double apart, TrianglePair next);
+
   /// Of the last search.
   const CastSearchCounts& counts() const { return counts_; }
 
@@ -64,6 +72,8 @@ class CastSearch {
   };
   class Moment;
 
+  bool begin(const Motion& motion);
+  Outcome<Impact> search(const Waiting& first);
   void push(const Waiting& pair);
   Waiting pop();
   bool waits_again(const Moment& moment, const Waiting& pair);

@@ -10,7 +10,7 @@
 #include <sixdof/geometry/tree.h>
 
 /// Branch and bound in double precision, for pairs of volumes whose distances floats cannot tell apart. Internal: for
-/// oracle/distance_search.cpp, oracle/candidates.cpp and generation/ray_cast_ties.cpp, which call it where a float
+/// oracle/distance_search.cpp, oracle/candidates.cpp and oracle/ray_cast_ties.cpp, which call it where a float
 /// bound is too coarse:
 ///   - bodies of very different size, where details are smaller than the rounding of the large body's coordinates;
 ///   - bodies that are far apart, where both are smaller than the rounding of their distance;

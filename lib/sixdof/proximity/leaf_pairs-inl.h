@@ -1,4 +1,4 @@
-// Part of oracle/distance_bounds-inl.h and of generation/ray_cast_bounds-inl.h: the pairs of triangles of two leaves.
+// Part of oracle/distance_bounds-inl.h and of oracle/ray_cast_bounds-inl.h: the pairs of triangles of two leaves.
 // Taken once per instruction set: the guard is Highway's for that.
 #if defined(SIXDOF_PROXIMITY_LEAF_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SIXDOF_PROXIMITY_LEAF_PAIRS_INL_H_

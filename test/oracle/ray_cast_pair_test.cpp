@@ -1,4 +1,4 @@
-#include <sixdof/generation/ray_cast_pair.h>
+#include <sixdof/oracle/ray_cast_pair.h>
 
 #include <random>
 

@@ -1,4 +1,4 @@
-#include <sixdof/generation/ray_cast_ties.h>
+#include <sixdof/oracle/ray_cast_ties.h>
 
 #include <algorithm>
 #include <span>
@@ -6,13 +6,13 @@
 
 #include <Eigen/Geometry>
 
-#include <sixdof/generation/ray_cast_search.h>
+#include <sixdof/oracle/ray_cast_search.h>
 #include <sixdof/proximity/close_search.h>
 
 #include <sixdof/base/simd_targets.h>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_ties.cpp"
+#define HWY_TARGET_INCLUDE "sixdof/oracle/ray_cast_ties.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -228,7 +228,7 @@ double DifferenceSupport::support_value(std::uint32_t a, std::uint32_t b, const 
 bool separated_in_double(const Cast& cast, std::uint32_t a, std::uint32_t b) {
   const Tree& tree_a = cast.a.tree();
   const Tree& tree_b = cast.b.tree();
-  const Eigen::Vector3d shift = cast.best.translation * cast.direction;
+  const Eigen::Vector3d shift = cast.offset + cast.best.translation * cast.direction;
   const Pose X_AB{.R = cast.R, .t = tree_a.center() + shift - cast.R * tree_b.center()};
   const detail::CloseBounds bounds(tree_a, tree_b, X_AB, cast.reach() * cast.direction);
   const double enough = cast.best.pair ? cast.target - 0.5 * cast.tie() : cast.target;

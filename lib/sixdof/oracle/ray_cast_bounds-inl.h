@@ -7,7 +7,7 @@
 
 #include <hwy/highway.h>
 
-#include <sixdof/generation/ray_cast_search.h>
+#include <sixdof/oracle/ray_cast_search.h>
 #include <sixdof/proximity/expansion-inl.h>
 #include <sixdof/proximity/frames.h>
 #include <sixdof/proximity/leaf_pairs-inl.h>
@@ -77,7 +77,7 @@ struct Ray {
   }
 
   void set_best(const Cast& cast) {
-    frames.set_shift(cast.best.translation * cast.direction);
+    frames.set_shift(cast.offset + cast.best.translation * cast.direction);
     frames.set_direction(k_axis_length * cast.best.axis);
     translation = static_cast<float>(cast.best.translation);
     axis_slope = static_cast<float>(k_axis_length * cast.best.axis.dot(cast.direction));

@@ -1,4 +1,4 @@
-#include <sixdof/generation/ray_cast_ties.h>
+#include <sixdof/oracle/ray_cast_ties.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/generation/ray_cast_search.h>
 #include <sixdof/geometry/triangle_distance.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/oracle/ray_cast_search.h>
 
 #include "../configuration/shapes.h"
 #include "triangles_of.h"

@@ -4,16 +4,16 @@
 
 #include <Eigen/Core>
 
-#include <sixdof/generation/ray_cast_search.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
+#include <sixdof/oracle/ray_cast_search.h>
 
 namespace sixdof::ray_cast {
 
 /// Distance of two triangles while one of them is translated along a line. It agrees with triangle_triangle_distance()
 /// but for triangles that nearly touch and whose edges are nearly parallel: for edges of length L at an angle, of one
 /// triangle or of both, their distance is off by up to 1e-32 L^2 / (distance angle^2). Internal: use
-/// distance_generator.h.
+/// generation/distance_generator.h or translation_cast.h.
 class MovingPair {
  public:
   /// @param b is translated by t * direction

@@ -1,4 +1,4 @@
-#include <sixdof/generation/ray_cast_search.h>
+#include <sixdof/oracle/ray_cast_search.h>
 
 #include <algorithm>
 #include <cstdint>

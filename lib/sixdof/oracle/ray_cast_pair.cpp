@@ -1,4 +1,4 @@
-#include <sixdof/generation/ray_cast_pair.h>
+#include <sixdof/oracle/ray_cast_pair.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <sixdof/base/simd_targets.h>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_pair.cpp"
+#define HWY_TARGET_INCLUDE "sixdof/oracle/ray_cast_pair.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -196,7 +196,7 @@ class PairUpdate {
  public:
   PairUpdate(Cast& cast, TrianglePair pair) : cast_(cast), pair_(pair), a_(cast.a.triangle(pair.a)) {
     const TriangleCorners b = cast.b.triangle(pair.b);
-    b_ = {cast.R * b[0], cast.R * b[1], cast.R * b[2]};
+    b_ = moved({cast.R * b[0], cast.R * b[1], cast.R * b[2]}, cast.offset);
   }
 
   bool run() {

@@ -13,7 +13,7 @@
 #include <sixdof/geometry/triangle_distance.h>
 
 /// Tests in double precision of pairs of subtrees that tie. Notation: see ray_cast_search.h. Internal: use
-/// distance_generator.h.
+/// generation/distance_generator.h or translation_cast.h.
 ///
 /// A pair of triangles ties with the best hit if its distance at the hit's translation is less than the target by no
 /// more than k_cast_tie. Where faces lie over parallel faces, edges along edges or corners over corners, thousands of

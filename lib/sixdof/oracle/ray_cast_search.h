@@ -9,17 +9,17 @@
 
 #include <Eigen/Core>
 
-#include <sixdof/generation/ray_cast_ties.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/ray_cast_ties.h>
 
-/// The branch and bound of the ray cast. Internal: use distance_generator.h.
+/// The branch and bound of the ray cast. Internal: use generation/distance_generator.h or translation_cast.h.
 ///
-/// Notation. B is translated by t u, where u is the ray's direction; at t = 0 the centres of both meshes' boxes
-/// coincide. For a pair of triangles, or of volumes around many of them, S is the Minkowski difference {q - p} of the
-/// points q of B at t = 0 and p of A. The pair's distance at t is that of the origin from S + t u: for triangles a
-/// convex function of t. A pair hits at the target distance d at t_ab(d), the largest t at which its distance is d. The
-/// first hit of the ray with the difference of the meshes, grown by d, is t(d) = max over all pairs of triangles of
-/// t_ab(d).
+/// Notation. B is translated by t u, where u is the ray's direction; at t = 0 the centre of B's box is at the ray's
+/// offset, usually zero, from that of A's. For a pair of triangles, or of volumes around many of them, S is the
+/// Minkowski difference {q - p} of the points q of B at t = 0 and p of A. The pair's distance at t is that of the
+/// origin from S + t u: for triangles a convex function of t. A pair hits at the target distance d at t_ab(d), the
+/// largest t at which its distance is d. The first hit of the ray with the difference of the meshes, grown by d, is
+/// t(d) = max over all pairs of triangles of t_ab(d).
 ///
 /// Triangles are in A's axes, relative to the centres of the meshes' boxes. Volumes stay in the frames of their trees,
 /// and are numbered as in detail::CloseVolume.
@@ -120,6 +120,8 @@ struct Cast {
   const CastMesh& b;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< u
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();      ///< From A's centre to B's at t = 0; perpendicular to u.
+  double least = 0.0;                                    ///< Translation of interest.
   double target = 0.0;                                   ///< d
   Hit best;
   CastCounts counts;
@@ -129,9 +131,9 @@ struct Cast {
   DifferenceSupport axis_support;   ///< Along best.separating_axis.
 
   /// Length that errors are relative to.
-  double size() const { return a.tree().radius() + b.tree().radius() + target; }
-  /// Upper bound on every translation of interest.
-  double reach() const { return 1.01 * size(); }
+  double size() const { return a.tree().radius() + b.tree().radius() + target + offset.norm(); }
+  /// Upper bound on the distance between two translations of interest.
+  double reach() const { return 1.01 * size() + std::max(0.0, -least); }
   /// By how much the distance of a pair that ties may be below the target. At most half the target: triangles that
   /// intersect never tie, even where the target is smaller than the rounding, as for contact of a small A with a large
   /// B.
@@ -154,11 +156,14 @@ class RaySearch {
   void set_rotation(const Eigen::Matrix3d& R_AB) { cast_.set_rotation(R_AB); }
 
   /// @param direction unit vector
-  void start_ray(const Eigen::Vector3d& direction);
+  /// @param offset of B's centre from the line through A's, perpendicular to the direction (length)
+  /// @param least translation of interest; not below minus the sum of both meshes' radii
+  void start_ray(const Eigen::Vector3d& direction, const Eigen::Vector3d& offset = Eigen::Vector3d::Zero(),
+                 double least = 0.0);
 
   /// Finds the first hit for the ray's next target.
   /// @param target positive, and not larger than the one before
-  /// @return null if there is none at a translation of 0 or more, up to a tie; otherwise valid until the next call
+  /// @return null if there is none at the least translation or more, up to a tie; otherwise valid until the next call
   const Hit* find_next(double target);
 
   const Cast& cast() const { return cast_; }

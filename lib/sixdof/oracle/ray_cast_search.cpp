@@ -1,21 +1,21 @@
-#include <sixdof/generation/ray_cast_search.h>
+#include <sixdof/oracle/ray_cast_search.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include <sixdof/generation/ray_cast_pair.h>
+#include <sixdof/oracle/ray_cast_pair.h>
 #include <sixdof/proximity/sorted_stack.h>
 
 #include <sixdof/base/simd_targets.h>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_search.cpp"
+#define HWY_TARGET_INCLUDE "sixdof/oracle/ray_cast_search.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
-#include <sixdof/generation/ray_cast_bounds-inl.h>
+#include <sixdof/oracle/ray_cast_bounds-inl.h>
 
 // Depth first: of the children of one expansion the one most likely to be hit first is next. Pairs of volumes wait on a
 // stack, front.pending. Of two volumes the larger is expanded.
@@ -87,7 +87,7 @@ class TieTests {
       const double slope = axis.dot(cast_.direction);
       if (slope < 0.0) return false;
       const double value = support.support_value(pair.a, pair.b, axis, k_budget);
-      const double gap = cast_.best.translation * slope + value - cast_.target;
+      const double gap = cast_.best.translation * slope + axis.dot(cast_.offset) + value - cast_.target;
       const bool culled = gap >= (cast_.best.pair ? -0.5 * tie_ : 0.0);
       backoff.record(culled, pairs_);
       if (gap > static_cast<double>(ray_.slack)) {
@@ -330,8 +330,10 @@ HWY_EXPORT(find_first_hit);
 
 void find_first_hit(Cast& cast) { HWY_DYNAMIC_DISPATCH(find_first_hit)(cast); }
 
-void RaySearch::start_ray(const Eigen::Vector3d& direction) {
+void RaySearch::start_ray(const Eigen::Vector3d& direction, const Eigen::Vector3d& offset, double least) {
   cast_.direction = direction;
+  cast_.offset = offset;
+  cast_.least = least;
   cast_.front.clear();
   last_.reset();
   reachable_ = true;
@@ -340,7 +342,7 @@ void RaySearch::start_ray(const Eigen::Vector3d& direction) {
 const Hit* RaySearch::find_next(double target) {
   if (!reachable_) return nullptr;  // a larger target has no hit, so this has none
   cast_.target = target;
-  search_from(-k_cast_tie * cast_.size(), cast_.direction);
+  search_from(cast_.least - k_cast_tie * cast_.size(), cast_.direction);
   if (last_) try_update(cast_, *last_->hit.pair);
   if (!last_ || !find_behind(*last_)) find_first_hit(cast_);
   reachable_ = cast_.best.pair.has_value();
