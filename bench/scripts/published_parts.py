@@ -128,9 +128,9 @@ def cast_steps():
     slow = ["-p", "fcl-cast:solver=oriented,advancement", "--benchmark_min_time=0.001"]
     return [rows("casts.json", 3, f"--benchmark_filter=^cast/algorithm:(exact|sampled|fcl-cast|bullet-hull)/pair:({four})/.*/step:10$",
                  "-p", "fcl-cast:solver=naive", "--sample", "64", "--budget", "150"),
-            rows("fcl.json", 8, "--benchmark_filter=^cast/algorithm:(exact|fcl-cast@.*)/pair:(elephant|bunny|ship)/.*/step:10$", *slow,
-                 "--sample", "8"),
-            rows("fcl-1m.json", 6,
+            rows("fcl.json", 5, "--benchmark_filter=^cast/algorithm:(exact|fcl-cast@.*)/pair:(elephant|bunny|ship)/.*/step:10$", *slow,
+                 "--sample", "4"),
+            rows("fcl-1m.json", 4,
                  "--benchmark_filter=^cast/algorithm:(exact|fcl-cast@.*)/pair:torus-knot-1m/motion:(rotation|tumble)/step:10$", *slow,
                  "--sample", "2"),
             rows("sampled.json", 2, "--benchmark_filter=^cast/algorithm:(exact|sampled@.*)/pair:elephant/motion:tumble/step:(1|10|100)$",
