@@ -30,7 +30,9 @@ Sheet sheet_against(const TableInput& input, const Against& asked) {
                    {"", "fastest other, us"}, {"", "which", true}, {"", "ratio"},       {"", "least..greatest"}};
   std::vector<results::Rivalry> rivalries = results::rivalries(input.groups, algorithm, against, time);
   if (rivalries.empty()) {
-    throw BadArgument(fmt::format("no rows without a fault of both {} and {}", algorithm, fmt::join(against, ", ")));
+    throw BadArgument(
+        fmt::format("no rows without a fault of both {} and {}{}", algorithm, fmt::join(against, ", "),
+                    time == results::RivalTime::p99 ? " that have a p99 (of 200 configurations or more)" : ""));
   }
   const auto ratio = [](const results::Rivalry& each) { return results::median(each.ratios()); };
   if (slower) {

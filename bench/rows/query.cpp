@@ -60,15 +60,8 @@ enum class Order {
 };
 
 constexpr const char* to_string(Order order) {
-  switch (order) {
-    case Order::random:
-      return "random";
-    case Order::path:
-      return "path";
-    case Order::motion:
-      return "motion";
-  }
-  return "";
+  constexpr const char* k_names[] = {"random", "path", "motion"};
+  return k_names[static_cast<std::size_t>(order)];
 }
 
 /// One row, and what its first call measured.

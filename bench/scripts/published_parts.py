@@ -47,7 +47,7 @@ DEPTH_PAIRS = ["bunny", "elephant", "ship", "torus-knot-10k", "gyroid-ball-10k-c
 CONTACTS = ["exact-contacts", "fcl-contacts", "bullet-gimpact", "ode", "coal", "mujoco-sdf", "parry", "python-fcl"]
 # Simbody is left out: a query of meshes takes seconds to minutes.
 DEPTHS = [*CONTACTS, "exact-penetration", "vps", "vps-field"]
-# Not on torus-knot-1m: the truth of two hulls of 13,000 corners takes a minute or more a pose.
+# Not on torus-knot-1m, whose hull has 72,155 corners: 19 minutes were not enough for the truth of 16 poses.
 HULL_DEPTHS = ["ccd-hull", "drake", "mujoco"]
 SCENES = ["cube", "pairs", "pile", "robot", "dust", "still", "all-move", "giant", "clusters", "shuffled"]
 LARGE_SCENES = ["cube", "shuffled", "dust"]
@@ -103,7 +103,7 @@ def loss_steps():
     table = ["sixdof", "table", "{folder}/collection/results.json", "--against", ",".join(others), "--markdown", "--slower"]
     return [object_steps("collection", 25, "--partners", "self,seeded,tenth", "--distances", "0,1,10,30", "--volumes", "1,10",
                          algorithms=("exact", *others))[0],
-            Step("mean.txt", [*table, "1"], 0.1, prints=True), Step("p99.txt", [*table, "1", "--p99"], 0.1, prints=True)]
+            Step("mean.txt", [*table, "1"], 0.1, prints=True)]
 
 
 def rival_steps():

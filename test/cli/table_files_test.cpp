@@ -52,6 +52,9 @@ TEST_F(TableCommand, AgainstListsWhereAnAlgorithmIsSlowerTheWorstFirst) {
   EXPECT_THAT(printed("--against 'fcl-*' --slower 1.2 --markdown " + file), Not(HasSubstr("distance 5 %")));
   EXPECT_THAT(printed("--against 'fcl-*' --slower 1 --p99 --markdown " + file),
               AllOf(HasSubstr("| distance 1 % | 90 | 20 | fcl-rss | 0.22 |"), Not(HasSubstr("distance 9 %"))));
+  const std::string few = write("few.json", {row("distance", "exact", "distance", 1, 1, {{"p99_ns", nullptr}}),
+                                             row("distance", "fcl-rss", "distance", 1, 2, {{"p99_ns", nullptr}})});
+  EXPECT_THAT(table("--against 'fcl-*' --p99 " + few).err, HasSubstr("p99 (of 200 configurations or more)"));
   EXPECT_THAT(table("--against ode " + file).err, HasSubstr("no rows without a fault of both exact and ode"));
 }
 

@@ -17,6 +17,7 @@
 namespace sixdof::ray_cast {
 namespace {
 
+using test::least_distance;
 using test::random_direction;
 using test::random_rotation;
 using test::triangles_of;
@@ -51,20 +52,6 @@ double find(Cast& cast, double target) {
   return cast.best.pair ? cast.best.translation : -1.0;
 }
 
-double distance(const Cast& cast, std::uint32_t a, std::uint32_t b, double t) {
-  const auto [first_a, count_a] = triangles_of(cast.a.tree(), a);
-  const auto [first_b, count_b] = triangles_of(cast.b.tree(), b);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t i = first_a; i < first_a + count_a; ++i) {
-    for (std::uint32_t j = first_b; j < first_b + count_b; ++j) {
-      TriangleCorners moved = cast.b.triangle(j);
-      for (Eigen::Vector3d& corner : moved) corner = cast.R * corner + t * cast.direction;
-      least = std::min(least, triangle_triangle_distance(cast.a.triangle(i), moved).distance);
-    }
-  }
-  return least;
-}
-
 /// Checks every bound of the front whose volumes do not have too many pairs of triangles; returns how many.
 int check_bounds(const Cast& cast) {
   constexpr std::uint64_t k_most_pairs = 256;
@@ -87,7 +74,7 @@ int check_bounds(const Cast& cast) {
       for (const double fraction : {0.0, 0.31, 0.77, 0.95, 1.0, 1.04}) {
         const double t = fraction * cast.best.translation;
         const double bound = static_cast<double>(offset) + static_cast<double>(slope) * t;
-        EXPECT_LE(std::min(bound, cast.target), distance(cast, a, b, t) + k_rounding * cast.size())
+        EXPECT_LE(std::min(bound, cast.target), least_distance(cast, a, b, t) + k_rounding * cast.size())
             << "expansion " << n << ", lane " << lane << ", fraction " << fraction;
       }
       ++checked;

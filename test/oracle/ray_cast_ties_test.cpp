@@ -19,6 +19,7 @@
 namespace sixdof::ray_cast {
 namespace {
 
+using test::least_distance;
 using test::random_direction;
 using test::random_rotation;
 using test::triangles_of;
@@ -170,21 +171,6 @@ TEST(DifferenceSupport, FindsTheSupportValueOfDifferences) {
       }
     }
   }
-}
-
-/// The least distance of the triangles of two volumes, B's translated by t u.
-double least_distance(const Cast& cast, std::uint32_t a, std::uint32_t b, double t) {
-  const auto [first_a, count_a] = triangles_of(cast.a.tree(), a);
-  const auto [first_b, count_b] = triangles_of(cast.b.tree(), b);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t i = first_a; i < first_a + count_a; ++i) {
-    for (std::uint32_t j = first_b; j < first_b + count_b; ++j) {
-      TriangleCorners moved = cast.b.triangle(j);
-      for (Eigen::Vector3d& corner : moved) corner = cast.R * corner + t * cast.direction;
-      least = std::min(least, triangle_triangle_distance(cast.a.triangle(i), moved).distance);
-    }
-  }
-  return least;
 }
 
 TEST(SeparatedInDouble, HoldsForAllTrianglesAndLargerTranslations) {

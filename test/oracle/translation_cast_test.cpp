@@ -120,17 +120,20 @@ TEST(CastSearch, AfterATimeFindsWhatIsFirstWhateverPairIsGuessed) {
   Generator generator(6);
   const Mesh a = shapes::bumpy_sphere(2, 0.3), b = shapes::rod(9, 0.1);
   Bodies bodies(a, b);
+  int hits = 0;
   for (int i = 0; i < 60; ++i) {
     const Motion motion = motions::random_motion(a, b, generator, i % 3);
     if (bodies.query.collide(motion.start)) continue;
     const Outcome<Impact> first = bodies.search.find(motion);
     if (!first.value.hit) continue;
+    ++hits;
     for (const std::uint32_t guess : {0u, 17u}) {
       const Outcome<Impact> found = bodies.search.find_after(motion, 0.5 * first.value.t, {guess, guess});
       ASSERT_TRUE(found.ok() && found.value.hit) << i;
       EXPECT_NEAR(found.value.t, first.value.t, 2.0 * CastSearch::k_resolution) << i;
     }
   }
+  EXPECT_GT(hits, 20);
 }
 
 }  // namespace

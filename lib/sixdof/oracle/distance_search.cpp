@@ -67,8 +67,7 @@ constexpr std::uint64_t k_triangles_before_gaps = 256;
 /// intersection asks whether a corner lies inside the other body: surfaces that nearly coincide intersect along few
 /// curves, but about half of their corners are inside.
 constexpr std::uint64_t k_pairs_before_corners = 128;
-/// So many pairs of leaves are early in a search.
-constexpr std::uint64_t k_early_leaf_pairs = 16;
+constexpr std::uint64_t k_early_leaf_pairs = 16;  ///< So many pairs of leaves are early in a search.
 /// Of axes across two triangles, which are measured exactly otherwise.
 constexpr CrossAxesUse k_use_of_cross_edges(0.03);
 
