@@ -192,7 +192,11 @@ class Installed(Project):
         for name, source, options, expected, words in cases:
             with self.subTest(name):
                 self.assertNotEqual(source == base, name != "unchanged", "the fault is planted")
-                code, said = self.judge_commit(clone, source, *options)
+                # Beside other tests one comparison of times in twenty may miss what is planted; three in a row are not noise.
+                for _ in range(3 if name == "time" else 1):
+                    code, said = self.judge_commit(clone, source, *options)
+                    if code == expected:
+                        break
                 self.assertEqual(code, expected, said)
                 self.assertIn(words, said)
         for file in ("gate.md", "gate.xml", "gate.json"):
