@@ -101,7 +101,7 @@ def loss_steps():
     """Every object with three partners, and the rows in which another library is faster than `exact`."""
     others = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts", "bullet-gimpact", "ode"]
     table = ["sixdof", "table", "{folder}/collection/results.json", "--against", ",".join(others), "--markdown", "--slower"]
-    return [object_steps("collection", 25, "--partners", "self,seeded,tenth", "--distances", "0,1,10,30", "--volumes", "1,10",
+    return [object_steps("collection", 40, "--partners", "self,tenth,seeded", "--distances", "0,1,10,30", "--volumes", "1,10",
                          algorithms=("exact", *others))[0],
             Step("mean.txt", [*table, "1"], 0.1, prints=True)]
 

@@ -20,7 +20,8 @@ class ExactQuery final : public Query {
       : oracle_(a, b),
         distance_query_(oracle_),
         cast_search_(oracle_.tree_a(), oracle_.tree_b()),
-        warm_start_(settings.choice("warm_start") == "on") {
+        warm_start_(settings.choice("warm_start") == "on"),
+        center_b_(b.center()) {
     for (const Mesh* mesh : {&a, &b}) {
       if (!mesh->solid()) {
         why_no_response_ = mesh->name() + ": " + mesh->why_not_solid() + k_repair_hint;
@@ -50,6 +51,7 @@ class ExactQuery final : public Query {
   Outcome<Response> respond(const Pose& X_AB) override {
     if (const Status status = check(X_AB); status != Status::ok) return status;
     if (!overlap_query_) return fail(Status::failed, why_no_response_);
+    if (oracle_.certainly_apart(X_AB)) return no_response(X_AB);
     const Overlap overlap = overlap_query_->evaluate(X_AB, warm_start_);
     return Response{.penalty = overlap.volume,
                     .volume = overlap.volume,
@@ -88,6 +90,11 @@ class ExactQuery final : public Query {
     return Status::ok;
   }
 
+  Response no_response(const Pose& X_AB) const {
+    const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+    return {.penalty = 0.0, .volume = 0.0, .force = zero, .torque = zero, .reference = X_AB * center_b_};
+  }
+
   Outcome<Impact> decided(const Outcome<Impact>& impact) {
     if (!impact.ok()) return fail(impact.status, "the bodies are too close for too long to decide when they touch");
     return impact;
@@ -109,6 +116,7 @@ class ExactQuery final : public Query {
   CastSearch cast_search_;
   std::optional<TranslationCast> translation_cast_;  ///< Made by the first translation.
   bool warm_start_;
+  Eigen::Vector3d center_b_;  ///< Of B's box, in its frame.
   std::optional<Solid> solid_a_;
   std::optional<Solid> solid_b_;  ///< None if both meshes are the same object.
   std::optional<OverlapQuery> overlap_query_;

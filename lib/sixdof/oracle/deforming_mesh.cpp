@@ -89,6 +89,7 @@ void DeformingMesh::refresh() {
   detail::DistanceBody& body = *body_;
   body.box.setEmpty();
   for (const Vector3d& p : vertices_) body.box.extend(p);
+  body.bound = detail::SupportBound(body.box);
   solid_ = !pieces_.empty() && volume_of(vertices_, triangles_, body.tree.center()) > 0.0;
   body.piece_vertices.clear();
   if (!solid_) return;

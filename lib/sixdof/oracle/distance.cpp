@@ -25,18 +25,6 @@ std::vector<Vector3d> find_piece_vertices(const Mesh& mesh) {
   return vertices;
 }
 
-/// Whether the boxes around the two meshes are certainly apart, by the axes of both.
-bool boxes_apart(const detail::DistanceBody& a, const detail::DistanceBody& b, const Pose& X_AB) {
-  const Vector3d half_a = 0.5 * a.box.sizes();
-  const Vector3d half_b = 0.5 * b.box.sizes();
-  const Vector3d between = X_AB * b.box.center() - a.box.center();
-  const double slack = 1e-9 * (a.tree.radius() + b.tree.radius()) +
-                       (1e-14 * (a.box.center().cwiseAbs() + b.box.center().cwiseAbs() + X_AB.t.cwiseAbs())).sum();
-  const Eigen::Matrix3d abs_R = X_AB.R.cwiseAbs();
-  return (between.cwiseAbs() - half_a - abs_R * half_b).maxCoeff() > slack ||
-         ((X_AB.R.transpose() * between).cwiseAbs() - half_b - abs_R.transpose() * half_a).maxCoeff() > slack;
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> detail::first_vertices_of_pieces(std::span<const Triangle> triangles, std::size_t vertices) {
@@ -58,6 +46,7 @@ std::vector<std::uint32_t> detail::first_vertices_of_pieces(std::span<const Tria
 detail::DistanceBody::DistanceBody(const Mesh& mesh)
     : tree(mesh),
       box(mesh.box()),
+      bound(tree),
       patches(tree),
       seeds(tree),
       smallest_leaf(smallest_leaf_of(tree)),
@@ -73,7 +62,7 @@ void detail::DistanceBody::update() {
 }
 
 std::size_t detail::DistanceBody::bytes() const {
-  return tree.bytes() + patches.bytes() + piece_vertices.capacity() * sizeof(Vector3d);
+  return tree.bytes() + bound.bytes() + patches.bytes() + piece_vertices.capacity() * sizeof(Vector3d);
 }
 
 DistanceOracle::DistanceOracle(const Mesh& a, const Mesh& b)
@@ -83,6 +72,10 @@ DistanceOracle::DistanceOracle(const Mesh& a, const Mesh& b)
 std::size_t DistanceOracle::bytes() const { return a_->bytes() + (b_ == a_ ? 0 : b_->bytes()); }
 
 double DistanceOracle::tie_width(const Pose& X_AB) const { return detail::TieWindow::of(*a_, *b_, X_AB).width; }
+
+bool DistanceOracle::certainly_apart(const Pose& X_AB) const {
+  return detail::certainly_apart(a_->bound, b_->bound, X_AB);
+}
 
 void DistanceQuery::prepare(const Pose& X_AB, bool warm_start) {
   search_.X_AB = X_AB;
@@ -129,7 +122,7 @@ Separation DistanceQuery::distance(const Pose& X_AB, bool warm_start) {
 
 bool DistanceQuery::collide(const Pose& X_AB, bool warm_start) {
   search_.counts = {};
-  if (boxes_apart(search_.a, search_.b, X_AB)) return false;
+  if (detail::certainly_apart(search_.a.bound, search_.b.bound, X_AB)) return false;
   prepare(X_AB, warm_start);
   if (intersecting_pair_ && detail::intersects(search_, *intersecting_pair_)) return true;
   const std::vector<Vector3d>& of_a = search_.a.piece_vertices;

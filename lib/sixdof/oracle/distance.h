@@ -55,7 +55,10 @@ class DistanceOracle {
   /// times (distances of the meshes' centres from their origins + |t|).
   double tie_width(const Pose& X_AB) const;
 
-  /// Memory of both trees and of the patches; what A and B share counts once.
+  /// Whether the bodies are certainly apart, neither one inside the other: asks convex bounds only (support_bound.h).
+  bool certainly_apart(const Pose& X_AB) const;
+
+  /// Memory of both trees, of the bounds and of the patches; what A and B share counts once.
   std::size_t bytes() const;
 
  private:

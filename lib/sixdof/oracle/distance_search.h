@@ -17,6 +17,7 @@
 #include <sixdof/geometry/triangle_distance.h>
 #include <sixdof/oracle/coplanar_patches.h>
 #include <sixdof/oracle/seed_corners.h>
+#include <sixdof/oracle/support_bound.h>
 #include <sixdof/proximity/close_search.h>
 
 /// The state of one distance query. Internal: use distance.h.
@@ -76,6 +77,7 @@ struct DistanceBody {
 
   Tree tree;
   Eigen::AlignedBox3d box;  ///< In the mesh's frame.
+  SupportBound bound;       ///< Of a mesh that deforms: that of its box.
   CoplanarPatches patches;
   SeedCorners seeds;
   float smallest_leaf;  ///< Square of the shortest diagonal of a leaf's box.

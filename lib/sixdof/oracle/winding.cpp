@@ -68,6 +68,12 @@ void find_in_box(const Tree& tree, const AlignedBox3d& box, std::vector<std::uin
   expand(expand, tree.nodes()[0]);
 }
 
+/// Whether a triangle is certainly not met by a segment within a box: it lies beyond one of the box's faces.
+bool misses(const Tree::Corners& c, const AlignedBox3d& box) {
+  return (c[0].cwiseMin(c[1]).cwiseMin(c[2]).array() > box.max().array()).any() ||
+         (c[0].cwiseMax(c[1]).cwiseMax(c[2]).array() < box.min().array()).any();
+}
+
 /// @param p the point in A's frame, p_mesh in the mesh's frame
 /// @param slack above the rounding of p_mesh and of transformed corners
 /// @param to_a maps points of the mesh to A's frame
@@ -77,12 +83,13 @@ void find_terms(const Tree& tree, const Vector3d& p, const Vector3d& p_mesh, dou
                 const ToA& to_a, std::vector<std::uint32_t>& triangles, const Add& add) {
   const std::optional<Vector3d> end = exit_point(box_of(tree, slack), p_mesh);
   if (!end) return;
-  find_in_box(tree,
-              {p_mesh.cwiseMin(*end) - Vector3d::Constant(slack), p_mesh.cwiseMax(*end) + Vector3d::Constant(slack)},
-              triangles);
+  const AlignedBox3d around(p_mesh.cwiseMin(*end) - Vector3d::Constant(slack),
+                            p_mesh.cwiseMax(*end) + Vector3d::Constant(slack));
+  find_in_box(tree, around, triangles);
   const Vector3d q = to_a(*end);
   for (const std::uint32_t t : triangles) {
     const Tree::Corners& c = tree.corners()[t];
+    if (misses(c, around)) continue;
     const int entered = pierce(p, q, {to_a(c[0]), to_a(c[1]), to_a(c[2])}, perturbed);
     if (entered != 0) add(t, -entered);
   }
