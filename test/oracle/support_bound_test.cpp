@@ -68,7 +68,7 @@ TEST(SupportBound, OfABoxIsThatOfItsCorners) {
     EXPECT_NEAR(by_tree.along(d).height, farthest(mesh, d), 1e-6);
     EXPECT_NEAR(by_box.along(d).height, farthest(mesh, d), 1e-6);
   }
-  EXPECT_LT((by_tree.half() - Vector3d(0.5, 0.4, 0.3)).norm(), 1e-6);
+  EXPECT_LT((by_tree.half() - Vector3d(0.5, 0.4, 0.3)).norm(), 1e-14);
   EXPECT_NEAR(by_box.radius(), by_tree.radius(), 1e-6);
 }
 
@@ -121,6 +121,30 @@ TEST(CertainlyApart, ConvexBodiesAtAFewPercentOfTheirSize) {
     }
     EXPECT_GT(told, mesh == &ball ? 199 : 190) << mesh->name();
   }
+}
+
+TEST(CertainlyApart, BoxesFaceToFaceAtTheGapOfContacts) {
+  const Mesh cube = shapes::box({0.5, 0.5, 0.5}), plate = shapes::box({0.3, 0.9, 0.2}, {40.0, 0.0, 0.0});
+  const SupportBound of_cube = bound_of(cube), of_plate = bound_of(plate);
+  for (const double angle : {0.0, 0.3, 1.2}) {
+    const auto at = [&](double gap) {
+      Pose X_AB{Eigen::AngleAxisd(angle, Vector3d::UnitX()).matrix(), {0.8 + gap, 0.0, 0.0}};
+      X_AB.t -= X_AB.R * plate.center();
+      return X_AB;
+    };
+    EXPECT_TRUE(certainly_apart(of_cube, of_plate, at(1e-11)));
+    EXPECT_TRUE(certainly_apart(of_plate, of_cube, at(1e-11).inverse()));
+    EXPECT_FALSE(certainly_apart(of_cube, of_plate, at(0.0)));
+    EXPECT_FALSE(certainly_apart(of_plate, of_cube, at(-1e-9).inverse()));
+  }
+}
+
+TEST(CertainlyApart, MatricesThatAreRotationsUpToRounding) {
+  const SupportBound cube = bound_of(shapes::box({0.5, 0.5, 0.5}));
+  // B reaches 2e-10 farther than a cube that is turned only.
+  const Eigen::Matrix3d R = (1.0 + 4e-10) * Eigen::Matrix3d::Identity();
+  EXPECT_FALSE(certainly_apart(cube, cube, {R, {1.0 + 1e-10, 0.0, 0.0}}));
+  EXPECT_TRUE(certainly_apart(cube, cube, {R, {1.0 + 3e-10, 0.0, 0.0}}));
 }
 
 TEST(CertainlyApart, SaysNothingWithoutABoundOrOfCoordinatesThatOverflow) {

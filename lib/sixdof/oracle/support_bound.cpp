@@ -83,11 +83,11 @@ float rounded_up(double x) { return std::nextafter(static_cast<float>(x), std::n
 bool boxes_apart(const Vector3d& half_a, const Vector3d& half_b, const Matrix3d& R, const Vector3d& between,
                  double slack) {
   const Matrix3d abs_R = R.cwiseAbs();
+  if ((between.cwiseAbs() - half_a - abs_R * half_b).maxCoeff() > slack) return true;
+  // The other axes take R for a rotation, which it is up to rounding.
+  slack += 4.0 * (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() * half_b.sum();
   const Vector3d in_b = R.transpose() * between;
-  if ((between.cwiseAbs() - half_a - abs_R * half_b).maxCoeff() > slack ||
-      (in_b.cwiseAbs() - half_b - abs_R.transpose() * half_a).maxCoeff() > slack) {
-    return true;
-  }
+  if ((in_b.cwiseAbs() - half_b - abs_R.transpose() * half_a).maxCoeff() > slack) return true;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     for (int m = 0; m < 3; ++m) {
@@ -120,10 +120,8 @@ void SupportBound::tabulate(const Height& height) {
       }
     }
   }
-  constexpr std::size_t k_middle = k_cells / 2;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    half_[static_cast<Eigen::Index>(axis)] =
-        std::max(table_[index(axis, k_middle, k_middle)], table_[index(axis + 3, k_middle, k_middle)]);
+  for (int axis = 0; axis < 3; ++axis) {
+    half_[axis] = std::max(height(Vector3d::Unit(axis)), height(-Vector3d::Unit(axis)));
   }
 }
 
@@ -168,9 +166,9 @@ bool certainly_apart(const SupportBound& a, const SupportBound& b, const Pose& X
   if (a.empty() || b.empty()) return false;
   const Vector3d between = X_AB * b.center() - a.center();
   const double reach = a.radius() + b.radius();
-  // Far above the rounding of transformed vertices, and of what is computed here.
+  // Above the rounding of transformed vertices, and of what is computed here; far below the gaps of bodies in contact.
   const double slack =
-      1e-9 * reach + (1e-14 * (a.center().cwiseAbs() + b.center().cwiseAbs() + X_AB.t.cwiseAbs())).sum();
+      1e-13 * reach + (1e-14 * (a.center().cwiseAbs() + b.center().cwiseAbs() + X_AB.t.cwiseAbs())).sum();
   if (between.squaredNorm() > (reach + slack) * (reach + slack)) return true;
   if (boxes_apart(a.half(), b.half(), X_AB.R, between, slack)) return true;
   Vector3d difference = between;  // of a point of B and one of A, or nearly so
