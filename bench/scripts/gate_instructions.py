@@ -15,7 +15,8 @@ import tempfile
 SAMPLE = 16        # configurations of a row
 LOOPS = 16         # more rounds of the timed loop, at least; more where they take fewer than ENOUGH instructions
 MOST_LOOPS = 65536
-ENOUGH = 100_000_000  # Two starts of a program differ by some 50,000.
+# Two starts of a program differ by up to 2,000,000: when it is loaded, libhwy measures the resolution of its timer.
+ENOUGH = 1_000_000_000
 REPEATABLE = 0.2   # percent: how far two counts of one program differ at most
 LONGEST_S = 240.0  # of one run; a row that takes longer is not counted
 QUERIES = ("collide", "distance", "respond")

@@ -35,15 +35,15 @@ if settings.get("error"):
 rows = [row for row in rows if re.search(flags["benchmark_filter"], row["name"])]
 if "COUNT_FILE" in os.environ:
     loops = int(flags["iterations"])
-    start = 5_000_000 + random.randrange(2000)
+    start = 5_000_000 + random.randrange(2_000_000)
     with open(os.environ["COUNT_FILE"], "w") as log:
         log.write(f"==7== I   refs:      {start + loops * settings.get('instructions', 10_000):,}\\n")
-calls = settings.get("slow_calls")  # of a machine that is busy in the first runs
+calls = settings.get("slow_calls")  # of a machine that is busy in the first runs, or in every second one
 if calls:
     counted = sys.argv[0] + ".calls"
     done = int(open(counted).read()) if os.path.exists(counted) else 0
     open(counted, "w").write(str(done + 1))
-    if done < calls:
+    if done % 2 if calls == "every second" else done < calls:
         for each in rows: each["cpu_time"] *= 2
 json.dump({"context": {"date": "today", "algorithm:x": settings.get("version", "1"), "arguments": sys.argv[1:]}, "benchmarks": rows},
           open(flags["benchmark_out"], "w"))
@@ -185,6 +185,12 @@ class Time(Folder):
         # The candidate takes twice as long in the run for its answers and in all nine of the first measurement.
         out = self.judged({}, {"slow_calls": 10}, "--stages", "answers,time", expected=0)
         self.assertIn("slower in the first of two measurements only", out)
+
+    def test_that_is_longer_is_red_where_every_second_run_is_slow(self):
+        uneven = {"slow_calls": "every second"}
+        out = self.time(uneven, uneven | {"time": 130.0}, 3)
+        self.assertIn("1 rows may be slower, and were measured 3 times as often", out)
+        self.time(uneven, uneven, 0)
 
     def test_of_files_is_not_judged(self):
         self.gate(self.program("base"), "--record", "base.json", "--filter", ".", "--stages", "answers")

@@ -51,6 +51,8 @@ TEST(SupportBound, IsNeverBelowTheFarthestVertexAndLittleAboveIt) {
       const SupportBound::Support support = bound.along(d);
       const double truth = farthest(mesh, d), scale = d.norm() * bound.radius();
       EXPECT_GE(support.height, truth - 1e-14 * scale) << mesh.name() << i;
+      // h changes by no more than the radius times the distance of directions. That of the four grid directions is at
+      // most 0.36 on average, weighted, and half of it is seen, at kinks of thin boxes.
       EXPECT_LE(support.height, truth + 0.2 * scale) << mesh.name() << i;
       EXPECT_NEAR(d.dot(support.point), support.height, 1e-13 * scale);
       sum += (support.height - truth) / scale;
@@ -97,29 +99,31 @@ TEST(CertainlyApart, NeverWhereSurfacesTouchOrNestAndInBothOrders) {
   EXPECT_FALSE(certainly_apart(small, large, {.t = {-0.8, 0.0, 0.0}}));
 }
 
-/// Convex bodies: how close they may be and are still told apart.
-TEST(CertainlyApart, ConvexBodiesAtAFewPercentOfTheirSize) {
+/// How close convex bodies may be and are still told apart.
+TEST(CertainlyApart, BallsPlatesAndCubesAtTwoPercentOfTheirDiagonal) {
   Generator generator(6);
-  const Mesh ball = make_sphere({}, 1280);
-  const Mesh plate = shapes::box({0.9, 0.01, 0.6}), cube = shapes::box({0.5, 0.5, 0.5});
-  for (const Mesh* mesh : {&ball, &plate, &cube}) {
-    const SupportBound bound = bound_of(*mesh);
+  const SupportBound ball = bound_of(make_sphere({}, 1280));
+  for (int i = 0; i < 200; ++i) {
+    Pose X_AB = shapes::random_pose(generator, 0.0);
+    X_AB.t = (1.0 + 0.02 * std::sqrt(3.0)) * 2.0 * ball.radius() * shapes::unit_vector(generator);
+    EXPECT_TRUE(certainly_apart(ball, ball, X_AB)) << i;
+  }
+  for (const Mesh& mesh : {shapes::box({0.9, 0.01, 0.6}), shapes::box({0.5, 0.5, 0.5})}) {
+    const SupportBound bound = bound_of(mesh);
     int told = 0;
     for (int i = 0; i < 200; ++i) {
       Pose X_AB = shapes::random_pose(generator, 0.0);
       const Vector3d way = shapes::unit_vector(generator);
-      // Bisection for 2 % of the diagonal.
-      double low = 0.0, high = 2.0 * mesh->diagonal();
-      for (int k = 0; k < 40 && mesh != &ball; ++k) {
+      double low = 0.0, high = 2.0 * mesh.diagonal();
+      for (int k = 0; k < 40; ++k) {
         const double middle = 0.5 * (low + high);
         X_AB.t = middle * way;
-        (distance_by_all_pairs(*mesh, *mesh, X_AB) < 0.02 * mesh->diagonal() ? low : high) = middle;
+        (distance_by_all_pairs(mesh, mesh, X_AB) < 0.02 * mesh.diagonal() ? low : high) = middle;
       }
-      X_AB.t =
-          mesh == &ball ? Vector3d((1.0 + 0.02 * std::sqrt(3.0)) * 2.0 * bound.radius() * way) : Vector3d(high * way);
+      X_AB.t = high * way;
       told += certainly_apart(bound, bound, X_AB);
     }
-    EXPECT_GT(told, mesh == &ball ? 199 : 190) << mesh->name();
+    EXPECT_GT(told, 190) << mesh.diagonal();
   }
 }
 
