@@ -23,7 +23,7 @@ constexpr const char* k_details =
 quotes such as 'sixdof-bench --external mine=./mine', or a result file. Stages, in this order:
   answers       red if an answer is wrong, lost or changed, if a row is lost or fails; new rows are named
   work          counts of work (nodes tested, bytes): red above --work-above
-  instructions  of a query, by perf or valgrind, one row of each query and algorithm: red above --work-above
+  instructions  of a query, by valgrind, one row of each query and algorithm: red above --work-above
   time          two programs only, run alternately: red if a row is slower by the U test (after Holm) AND by more than
                 --fail-above in the median of pairs AND in the fastest run, in a first AND in a second run
 A stage that cannot be judged says why, and is not green. After a red stage the later ones still run, but not after red

@@ -13,6 +13,7 @@
 #include <sixdof/measure/latency.h>
 #include <sixdof/query/timed_loop.h>
 #include "bench/harness/cache_eviction.h"
+#include "bench/harness/counted_loop.h"
 #include "bench/harness/guarded_query.h"
 
 /// How queries are timed. The functions are templates on the question, so that the timed loops contain nothing but the
@@ -66,6 +67,7 @@ void time_mean(benchmark::State& state, std::span<const Pose> poses, GuardedQuer
     }
     return;
   }
+  const CountedLoop counted;
   while (state.KeepRunningBatch(round)) {
     ask_all(poses.size(), [&](std::size_t i) { return query.ask_timed(poses[i]); });
   }

@@ -1,10 +1,9 @@
-"""Instructions of a query, for bench/gate: counted by perf where the machine lets it, or else by valgrind.
+"""Instructions of a query, for bench/gate, counted by callgrind (Debian: valgrind).
 
-A row is run twice that differ only in how many queries it times (--iterations): the difference of both counts is that
-of the loop. Start, loading, preparation, checks of answers and truth cancel.
+The program tells callgrind where the timed loop of a row begins and ends (bench/harness/counted_loop.h), so that start,
+loading, preparation, checks of answers and truth are not counted. The row times one round over its configurations.
 """
 
-import math
 import os
 import pathlib
 import re
@@ -13,11 +12,7 @@ import subprocess
 import tempfile
 
 SAMPLE = 16        # configurations of a row
-LOOPS = 16         # more rounds of the timed loop, at least; more where they take fewer than ENOUGH instructions
-MOST_LOOPS = 65536
-# Two starts of a program differ by up to 2,000,000: when it is loaded, libhwy measures the resolution of its timer.
-ENOUGH = 1_000_000_000
-REPEATABLE = 0.2   # percent: how far two counts of one program differ at most
+REPEATABLE = 0.05  # percent: how far two counts of one program differ at most
 LONGEST_S = 240.0  # of one run; a row that takes longer is not counted
 QUERIES = ("collide", "distance", "respond")
 
@@ -26,34 +21,22 @@ class NotCounted(Exception):
     """Why a row, or all, cannot be counted."""
 
 
-def perf_counts(perf):
-    """Whether perf counts instructions here: in many virtual machines and containers it does not."""
-    done = subprocess.run([perf, "stat", "-x,", "-e", "instructions:u", "true"], capture_output=True, text=True, check=False)
-    return done.returncode == 0 and done.stderr.split(",")[0].strip().isdigit()
-
-
 def find_counter():
     """(name and version, function of a log file's stem that gives the words before a command). @raises NotCounted"""
-    perf, valgrind = shutil.which("perf"), shutil.which("valgrind")
-    if perf and perf_counts(perf):
-        return "perf", lambda log: [perf, "stat", "-x,", "-o", f"{log}.1", "-e", "instructions:u", "--"]
-    if valgrind:
-        version = subprocess.run([valgrind, "--version"], capture_output=True, text=True, check=False).stdout.strip()
-        return version, lambda log: [valgrind, "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null",
-                                     "--trace-children=yes", f"--log-file={log}.%p"]
-    raise NotCounted("neither perf nor valgrind counts instructions here")
+    valgrind = shutil.which("valgrind")
+    if not valgrind:
+        raise NotCounted("valgrind, which counts instructions, is not there")
+    version = subprocess.run([valgrind, "--version"], capture_output=True, text=True, check=False).stdout.strip()
+    return version, lambda log: [valgrind, "--tool=callgrind", "--instr-atstart=no", "--callgrind-out-file=/dev/null",
+                                 "--trace-children=yes", f"--log-file={log}.%p"]
 
 
 def counted(folder):
-    """The sum over the log files of all processes."""
-    total, found = 0, False
-    for log in folder.iterdir():
-        text = log.read_text(encoding="utf-8", errors="replace")
-        for match in (re.search(r"\bI\s+refs:\s+([0-9,]+)", text), re.search(r"^([0-9]+),[^,]*,instructions", text, re.MULTILINE)):
-            if match:
-                total, found = total + int(match.group(1).replace(",", "")), True
-    if not found:
-        raise NotCounted("the counter printed no count")
+    """The sum over the log files of all processes. @raises NotCounted if it is zero"""
+    texts = [log.read_text(encoding="utf-8", errors="replace") for log in folder.iterdir()]
+    total = sum(int(found.replace(",", "")) for text in texts for found in re.findall(r"\bI\s+refs:\s+([0-9,]+)", text))
+    if total == 0:
+        raise NotCounted("the program was built without valgrind/callgrind.h, which tells the counter where its loop is")
     return total
 
 
@@ -80,18 +63,9 @@ def count(command, counter, environment):
 
 def per_query(program, row, flags, counter, environment):
     """Instructions of one query of a row. @param program words of a command line @raises NotCounted"""
-    def total(loops):
-        return count([*program, *flags, f"--benchmark_filter=^{row}$", "--sample", SAMPLE, "--seed", 1, "--budget", 0,
-                      f"--iterations={loops * SAMPLE}"], counter, environment)
-
-    start, loops = total(1), LOOPS
-    difference = total(1 + loops) - start
-    if difference < ENOUGH:
-        loops = min(MOST_LOOPS, math.ceil(loops * ENOUGH / max(difference, 1)))
-        difference = total(1 + loops) - start
-    if difference <= 0:
-        raise NotCounted("the loop takes fewer instructions than two starts differ")
-    return difference / (loops * SAMPLE)
+    command = [*program, *flags, f"--benchmark_filter=^{row}$", "--sample", SAMPLE, "--seed", 1, "--budget", 0,
+               f"--iterations={SAMPLE}"]
+    return count(command, counter, environment) / SAMPLE
 
 
 def rows_to_count(document):
