@@ -106,6 +106,12 @@ def loss_steps():
             Step("mean.txt", [*table, "1"], 0.1, prints=True)]
 
 
+def paper_steps():
+    """All configurations of one set of the paper's size. The set is made first, or was made before with the same bytes."""
+    return [Step("run/survey.json", ["bench/paper", "--a", "helmet", "--out", "{folder}/run", "--algorithms", "exact", "vps",
+                                     "vps:point_spacing=0.008", "ist", "ist:spheres=1000", "--shards", "8"], 35)]
+
+
 def rival_steps():
     """Two poses of a bucket are enough where a query takes seconds: 5 to 10 of them are asked of each pose."""
     slow = (f"^(collide|distance|respond)/algorithm:({'|'.join(['exact', *SLOW_RIVALS])})/"
@@ -220,6 +226,7 @@ def parts():
                    "--benchmark_filter=-algorithm:rivals/", "--sample", "200", "--budget", "900")]),
         Part("collection", "every algorithm on the objects of the collection",
              object_steps("collection", 25, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10")),
+        Part("paper", "every configuration of a set of the paper's size", paper_steps()),
         Part("losses", "objects on which another library is faster than `exact`", loss_steps()),
         Part("rivals", "what bench/rivals/setup has made ready, on four pairs and the collection",
              rival_steps(), setup=("bench/rivals/setup",)),
