@@ -287,6 +287,9 @@ sixdofReport.themes = {
 /** Space for a letter of the usual size, in pixels. */
 const letterWidth = 6.6;
 
+/** Of a label of a legend, in pixels, before it is cut. */
+const longestLabel = 400;
+
 function configOf(theme, font) {
   const { text, quiet, grid, background } = sixdofReport.themes[theme];
   return {
@@ -295,17 +298,18 @@ function configOf(theme, font) {
     view: { stroke: grid },
     axis: { labelColor: text, titleColor: text, gridColor: grid, domainColor: quiet, tickColor: quiet, labelFontSize: 12,
             titleFontSize: 13, titleFontWeight: "normal" },
-    legend: { labelColor: text, titleColor: text, labelFontSize: 12, symbolSize: 90, symbolOpacity: 1, orient: "bottom", labelLimit: 220 },
+    legend: { labelColor: text, titleColor: text, labelFontSize: 12, symbolSize: 90, symbolOpacity: 1, orient: "bottom", labelLimit: longestLabel },
     header: { labelColor: text, titleColor: text },
     title: { color: text, fontSize: 14, subtitleColor: quiet, anchor: "start", frame: "bounds" },
     text: { color: text, fontSize: 12 },
   };
 }
 
-/** As many columns of a legend as a width has room for. */
+/** As many columns of a legend as fit beside the scale of the y axis. Under node Vega reckons 0.8 of the font's size for a
+ * letter. */
 sixdofReport.legendColumns = function (names, width, most) {
   const longest = Math.max(...names.map((name) => String(name).length), 1);
-  return Math.max(1, Math.min(most, Math.floor(width / (Math.min(220, longest * letterWidth) + 34))));
+  return Math.max(1, Math.min(most, Math.floor((width - 80) / (Math.min(longestLabel, longest * 0.8 * 12) + 34))));
 };
 
 /** Names below an axis that has no room for them beside each other are turned; those at its side are cut. */
