@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 OBJECTS = "box-1k,bumpy-sphere-3k,shaft-2k"
@@ -50,6 +51,26 @@ class Release(unittest.TestCase):
         self.describes(self.folder / "one")
         self.is_verified(self.folder / "one")
         self.is_read_without_sixdof(self.folder / "one")
+
+    def test_that_is_killed_leaves_no_program_behind(self):
+        words = ["--recipes", "--objects", OBJECTS, "--grid", "so3:100:100", "--jobs", "2"]
+        release = subprocess.Popen([FIXTURES / "release", "--program", SIXDOF, "--out", self.folder / "killed", *words],
+                                   stderr=subprocess.PIPE)
+        running = lambda: subprocess.run(["pgrep", "-f", f"^{SIXDOF} generate .*so3:100:100"], capture_output=True,  # noqa: E731
+                                         check=False).stdout.split()
+        try:
+            self.wait_until(lambda: len(running()) >= 2)
+        finally:
+            release.kill()
+            release.communicate()
+        self.wait_until(lambda: not running())
+        self.assertEqual(list((self.folder / "killed").glob("*.h5")), [])
+
+    def wait_until(self, true):
+        deadline = time.monotonic() + 60
+        while not true():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.1)
 
     def describes(self, folder):
         sets = json.loads((folder / "manifest.json").read_text())["sets"]
