@@ -108,8 +108,8 @@ def loss_steps():
 
 def paper_steps():
     """All configurations of one set of the paper's size. The set is made first, or was made before with the same bytes."""
-    return [Step("run/survey.json", ["bench/paper", "--a", "helmet", "--out", "{folder}/run", "--algorithms", "exact", "vps",
-                                     "vps:point_spacing=0.008", "ist", "ist:spheres=1000", "--shards", "8"], 35)]
+    return [Step("run/survey.json", ["bench/paper", "--a", "torus-200", "--out", "{folder}/run", "--jobs", "2", "--algorithms", "exact", "vps",
+                                     "vps:point_spacing=0.008", "ist", "ist:spheres=1000", "--shards", "16"], 20)]
 
 
 def rival_steps():
