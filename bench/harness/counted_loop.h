@@ -7,8 +7,8 @@
 namespace sixdof::bench {
 
 /// While one lives, callgrind counts instructions, if the program runs in it with --instr-atstart=no
-/// (bench/scripts/gate_instructions.py). Otherwise it does nothing that takes time. Where valgrind's header was not there
-/// when this was compiled, nothing is ever counted.
+/// (bench/scripts/gate_instructions.py). Otherwise it does nothing that takes time. Where valgrind's header was not
+/// there when this was compiled, nothing is ever counted.
 class CountedLoop {
  public:
 #ifdef CALLGRIND_START_INSTRUMENTATION
