@@ -109,7 +109,7 @@ def loss_steps():
 def paper_steps():
     """All configurations of one set of the paper's size. The set is made first, or was made before with the same bytes."""
     return [Step("run/survey.json", ["bench/paper", "--a", "torus-200", "--out", "{folder}/run", "--jobs", "2", "--algorithms", "exact", "vps",
-                                     "vps:point_spacing=0.008", "ist", "ist:spheres=1000", "--shards", "16"], 20)]
+                                     "vps:point_spacing=0.008", "ist", "ist:spheres=1000", "--shards", "16"], 40)]
 
 
 def rival_steps():
