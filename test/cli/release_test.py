@@ -56,8 +56,18 @@ class Release(unittest.TestCase):
         words = ["--recipes", "--objects", OBJECTS, "--grid", "so3:100:100", "--jobs", "2"]
         release = subprocess.Popen([FIXTURES / "release", "--program", SIXDOF, "--out", self.folder / "killed", *words],
                                    stderr=subprocess.PIPE)
-        running = lambda: subprocess.run(["pgrep", "-f", f"^{SIXDOF} generate .*so3:100:100"], capture_output=True,  # noqa: E731
-                                         check=False).stdout.split()
+
+        def running():
+            found = []
+            for file in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+                try:
+                    program, *arguments = file.read_bytes().decode().split("\0")
+                except OSError:
+                    continue  # it has ended
+                if program == SIXDOF and "so3:100:100" in arguments:
+                    found.append(file)
+            return found
+
         try:
             self.wait_until(lambda: len(running()) >= 2)
         finally:
