@@ -34,6 +34,8 @@ KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_messa
         "amplitude", "processor_ns", "update_ns", "answer_ns", "p99_frame_ns", "built_triangles", "missed_pairs", "wrong_pairs",
         "bodies"]
 DIGITS = 4  # Significant digits of the numbers that are kept.
+# Numbers of configurations, which are kept whole.
+COUNTS = {"configurations", "judged", "failed", "mismatch", "misses", "phantoms"}
 FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
 # Rivals whose queries take milliseconds or less, and those that take up to seconds on large meshes.
 FAST_RIVALS = ["coal", "drake", "jolt", "mujoco", "python-fcl", "vtk"]
@@ -109,7 +111,7 @@ def loss_steps():
 def paper_steps():
     """All configurations of one set of the paper's size. The set is made first, or was made before with the same bytes."""
     return [Step("run/survey.json", ["bench/paper", "--a", "torus-200", "--out", "{folder}/run", "--jobs", "2", "--algorithms", "exact", "vps",
-                                     "vps:point_spacing=0.008", "ist", "ist:spheres=1000", "--shards", "16"], 40)]
+                                     "vps:point_spacing=0.008", "ist", "ist:spheres=1000", "--shards", "16"], 60)]
 
 
 def rival_steps():
@@ -233,15 +235,17 @@ def parts():
     ]
 
 
-def rounded(value):
-    """Numbers of a JSON value with DIGITS significant digits."""
+def rounded(value, name=None):
+    """Numbers of a JSON value with DIGITS significant digits, those of COUNTS whole."""
     if isinstance(value, bool):
         return value
     if isinstance(value, float):
+        if name in COUNTS and value.is_integer():
+            return int(value)
         short = float(f"{value:.{DIGITS}g}")
         return int(short) if short.is_integer() and abs(short) < 1e15 else short
     if isinstance(value, dict):
-        return {key: rounded(each) for key, each in value.items()}
+        return {key: rounded(each, key) for key, each in value.items()}
     return [rounded(each) for each in value] if isinstance(value, list) else value
 
 
