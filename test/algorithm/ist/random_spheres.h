@@ -44,4 +44,18 @@ inline Pose random_pose(std::mt19937_64& random, double reach) {
   return {q.toRotationMatrix(), reach * Eigen::Vector3d(x, y, z)};
 }
 
+/// Numbers and points of a seed.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : random_(seed) {}
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  Eigen::Vector3d point(double size) {
+    const double x = uniform(-size, size), y = uniform(-size, size), z = uniform(-size, size);
+    return {x, y, z};
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
 }  // namespace sixdof::ist

@@ -57,32 +57,6 @@ std::vector<Eigen::Vector3d> shuffled(std::span<const Eigen::Vector3d> direction
 
 bool is_normal(const Eigen::Vector3d& area_vector) { return area_vector.squaredNorm() > 0.0; }
 
-/// Calls visit(triangle, in tree order) for all triangles whose box is within `reach` of p.
-template <class Visit>
-void for_triangles_near(const Tree& tree, const Eigen::Vector3d& p, double reach, const Visit& visit) {
-  const Eigen::Vector3d q = p - tree.center();
-  std::vector<std::uint32_t> stack{0};
-  while (!stack.empty()) {
-    const Tree::Node& node = tree.nodes()[stack.back()];
-    stack.pop_back();
-    for (std::uint32_t c = 0; c < node.child_count; ++c) {
-      double squared = 0.0;
-      for (Eigen::Index k = 0; k < 3; ++k) {
-        const double outside =
-            std::max({0.0, static_cast<double>(node.lower[k][c]) - q[k], q[k] - static_cast<double>(node.upper[k][c])});
-        squared += outside * outside;
-      }
-      if (squared > reach * reach) continue;
-      const Tree::Child child = node.child[c];
-      if (!child.is_leaf()) {
-        stack.push_back(child.node());
-        continue;
-      }
-      for (std::uint32_t t = child.first(); t < child.first() + child.count(); ++t) visit(t);
-    }
-  }
-}
-
 /// Triangles (tree order) by the sphere that is nearest to their centroid, those of sphere i from first[i] on.
 struct NearestTriangles {
   std::vector<std::size_t> first;
@@ -148,6 +122,7 @@ std::vector<NormalCone> normal_cones(const Mesh& mesh, std::span<const Sphere> s
     for_triangles_near(tree, sphere.center, reach, [&](std::uint32_t t) {
       const Eigen::Vector3d point = closest_point_on_triangle(sphere.center, tree.corners()[t]);
       if ((point - sphere.center).norm() <= reach) add(t);
+      return true;
     });
     cones[i] = narrowest_cone(normals);
   });

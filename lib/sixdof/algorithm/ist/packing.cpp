@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/algorithm/ist/free_space.h>
+#include <sixdof/algorithm/ist/prototype.h>
 #include <sixdof/algorithm/preparation.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/hash.h>
@@ -27,150 +29,9 @@ namespace {
 constexpr double k_margin = 1e-9;          // relative gap between a sphere and its obstacles, far above rounding
 constexpr double k_start_depth = 1e-7;     // of a start point below the surface, in diagonals
 constexpr double k_depth_rounding = 1e-6;  // relative rounding of that depth: coordinates have 1e-16 / 1e-7, with slack
-constexpr int k_max_doublings = 40;        // of the clearance, in the first phase
-constexpr int k_max_model_steps = 64;      // measured clearances in the second phase; narrow wedges need many
-constexpr std::size_t k_model_obstacles = 8;    // latest obstacles in the model of the clearance
-constexpr double k_min_gain = 1e-2;             // converged when the model promises a smaller relative gain than this
-constexpr double k_round_ratio = 0.9;           // a round inserts spheres of at least this fraction of the largest
+constexpr double k_round_ratio = 0.9;      // a round inserts spheres of at least this fraction of the largest
 constexpr std::size_t k_starts_per_sphere = 2;  // start points on the surface per sphere asked for
 constexpr std::size_t k_min_starts = 2'000;
-
-struct Prototype {
-  Eigen::Vector3d position;
-  double clearance = 0.0;
-  std::uint64_t order = 0;  ///< Breaks ties.
-  bool operator<(const Prototype& o) const {
-    return clearance != o.clearance ? clearance < o.clearance : order > o.order;
-  }
-};
-
-/// An inserted sphere, or the tangent plane of the surface at the closest point.
-struct Obstacle {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< Centre of the sphere, or point on the surface.
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Plane: unit normal towards the prototype. Sphere: unused.
-  double radius = 0.0;                               ///< Sphere: > 0. Plane: 0.
-
-  double distance(const Eigen::Vector3d& p) const {
-    return radius > 0.0 ? (p - point).norm() - radius : normal.dot(p - point);
-  }
-  Eigen::Vector3d away(const Eigen::Vector3d& p) const {
-    return radius > 0.0 ? Eigen::Vector3d((p - point).normalized()) : normal;
-  }
-};
-
-/// The space inside the mesh and outside the inserted spheres.
-struct FreeSpace {
-  const Tree& tree;
-  SphereIndex spheres;
-
-  struct Clearance {
-    double value = 0.0;  ///< Distance to the closest obstacle; `bound` if none is nearer than that.
-    Obstacle obstacle;   ///< The closest one.
-  };
-
-  /// @param bound upper bound on the clearance; it changes by at most the length of a step
-  Clearance clearance(const Eigen::Vector3d& p, double bound) const {
-    constexpr double k_bound_slack = 1.0 + 1e-12;
-    const auto sphere = spheres.nearest(p, bound * k_bound_slack);
-    const auto surface = closest_point(tree, p, std::max(0.0, std::min(bound * k_bound_slack, sphere.clearance)));
-    if (surface) {
-      const Eigen::Vector3d offset = p - surface->point;
-      const Eigen::Vector3d away =
-          surface->distance > 0.0 ? Eigen::Vector3d(offset / surface->distance) : Eigen::Vector3d::Zero();
-      return {surface->distance, {surface->point, away, 0.0}};
-    }
-    if (sphere.sphere < 0) return {bound, {}};
-    const Sphere& nearest = spheres.spheres()[static_cast<std::size_t>(sphere.sphere)];
-    return {sphere.clearance, {nearest.center, Eigen::Vector3d::Zero(), nearest.radius}};
-  }
-};
-
-/// Models the clearance near a prototype as the distance to the nearest of the obstacles met last.
-class ClearanceModel {
- public:
-  void add(const Obstacle& obstacle) {
-    obstacles_[next_ % k_model_obstacles] = obstacle;
-    ++next_;
-  }
-
-  /// The point within `trust` of `start` with the largest modelled clearance, and that clearance: moves away from the
-  /// nearest obstacle in shrinking steps.
-  std::pair<Eigen::Vector3d, double> maximise(const Eigen::Vector3d& start, double trust) const {
-    constexpr int k_steps = 40;
-    constexpr double k_decay = 0.88;  // 0.88^40 = 0.6 %
-    Eigen::Vector3d p = start, best = start;
-    Nearest here = nearest(p);
-    double best_distance = here.distance;
-    double length = 0.5 * trust;
-    for (int i = 0; i < k_steps; ++i, length *= k_decay) {
-      p += here.obstacle->away(p) * length;
-      if (const double out = (p - start).norm(); out > trust) p = start + (p - start) * (trust / out);
-      here = nearest(p);
-      if (here.distance > best_distance) {
-        best = p;
-        best_distance = here.distance;
-      }
-    }
-    return {best, best_distance};
-  }
-
- private:
-  struct Nearest {
-    double distance = std::numeric_limits<double>::infinity();
-    const Obstacle* obstacle = nullptr;
-  };
-  Nearest nearest(const Eigen::Vector3d& p) const {
-    Nearest best;
-    for (std::size_t i = 0; i < std::min(next_, k_model_obstacles); ++i) {
-      const double distance = obstacles_[i].distance(p);
-      if (distance < best.distance) best = {distance, &obstacles_[i]};
-    }
-    return best;
-  }
-
-  std::array<Obstacle, k_model_obstacles> obstacles_;
-  std::size_t next_ = 0;
-};
-
-struct Start {
-  Eigen::Vector3d position;
-  double bound;                ///< Upper bound on the clearance here.
-  double min_clearance = 0.0;  ///< With less clearance than this the start is discarded.
-};
-
-/// Moves a prototype from `start`, in the free space, to a local maximum of the clearance.
-///
-/// First phase: away from the closest obstacle while that doubles the clearance. Second phase, by cutting planes: every
-/// measured clearance adds an obstacle to the model, whose maximum within a trust region is measured next.
-Prototype maximise_clearance(const FreeSpace& space, const Start& start, std::uint64_t order) {
-  ClearanceModel model;
-  auto here = space.clearance(start.position, start.bound);
-  if (here.value < start.min_clearance) return {start.position, 0.0, order};
-  Prototype best{start.position, here.value, order};
-  for (int i = 0; i < k_max_doublings && here.value > 0.0; ++i) {
-    model.add(here.obstacle);
-    const Eigen::Vector3d next = best.position + here.obstacle.away(best.position) * (0.99 * best.clearance);
-    here = space.clearance(next, 2.0 * best.clearance);
-    const bool slowing = here.value < 1.5 * best.clearance;
-    if (here.value > best.clearance) best = {next, here.value, order};
-    if (slowing) break;
-  }
-  model.add(here.obstacle);
-  double trust = 0.9 * best.clearance;
-  for (int i = 0; i < k_max_model_steps && best.clearance > 0.0; ++i) {
-    const auto [next, promise] = model.maximise(best.position, trust);
-    if (promise < best.clearance * (1.0 + k_min_gain)) break;
-    here = space.clearance(next, best.clearance + trust);
-    model.add(here.obstacle);
-    if (here.value > best.clearance) {
-      best = {next, here.value, order};
-      trust = std::min(1.5 * trust, 0.9 * best.clearance);
-    } else {
-      trust *= 0.6;
-    }
-  }
-  return best;
-}
 
 /// Start points just below the surface, one per equal part of its area (stratified sampling). min_clearance discards
 /// points that may be beyond another wall.
@@ -240,11 +101,8 @@ class Packer {
 
   /// Optimises one prototype per start, in parallel, and queues those that are large enough.
   void add_prototypes(const std::vector<Start>& starts) {
-    std::vector<Prototype> prototypes(starts.size());
-    const std::uint64_t first = order_;
+    const std::vector<Prototype> prototypes = find_prototypes(space_, starts, order_);
     order_ += starts.size();
-    parallel::for_each(starts.size(),
-                       [&](std::size_t i) { prototypes[i] = maximise_clearance(space_, starts[i], first + i); });
     for (const Prototype& prototype : prototypes) {
       if (prototype.clearance >= min_radius_) queue_.push(prototype);
     }

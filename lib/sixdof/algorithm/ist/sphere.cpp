@@ -113,14 +113,16 @@ void SphereIndex::insert(const Sphere& sphere) {
   class_members_[size_class].push_back(static_cast<std::int32_t>(spheres_.size()) - 1);
 }
 
-SphereIndex::Nearest SphereIndex::nearest(const Eigen::Vector3d& p, double within) const {
-  Nearest best{within};
+/// Calls visit(index) for all spheres whose clearance may be below `within`, large ones first. `within` may shrink
+/// meanwhile.
+template <class Visit>
+void SphereIndex::for_candidates(const Eigen::Vector3d& p, const double& within, const Visit& visit) const {
   for (std::size_t size_class = 0; size_class < k_size_classes; ++size_class) {
     const std::vector<std::int32_t>& members = class_members_[size_class];
     if (members.empty()) continue;
     const double radius = class_radius(largest_, size_class);
     const double width = k_cell_radii * radius;
-    const double reach = best.clearance + radius;  // a closer sphere's centre is within this
+    const double reach = within + radius;  // the centre of a sphere that is near enough is within this
     if (reach <= 0.0) continue;
     std::array<std::int64_t, 3> low, high;
     double cell_count = 1.0;
@@ -129,28 +131,35 @@ SphereIndex::Nearest SphereIndex::nearest(const Eigen::Vector3d& p, double withi
       high[k] = cell_of(p[static_cast<Eigen::Index>(k)] + reach, width);
       cell_count *= static_cast<double>(high[k] - low[k] + 1);
     }
-    const auto consider = [&](std::int32_t s) {
-      const Sphere& sphere = spheres_[static_cast<std::size_t>(s)];
-      const double clearance = (sphere.center - p).norm() - sphere.radius;
-      if (clearance < best.clearance || (clearance == best.clearance && best.sphere >= 0 && s < best.sphere)) {
-        best = {clearance, s};
-      }
-    };
     // Far away from small spheres more cells are in reach than the class has spheres.
     if (cell_count > static_cast<double>(members.size())) {
-      for (const std::int32_t s : members) consider(s);
+      for (const std::int32_t s : members) visit(s);
       continue;
     }
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
           const Cell& cell = cells_[slot(key(size_class, x, y, z))];
-          for (std::int32_t s = cell.first; s >= 0; s = next_[static_cast<std::size_t>(s)]) consider(s);
+          for (std::int32_t s = cell.first; s >= 0; s = next_[static_cast<std::size_t>(s)]) visit(s);
         }
       }
     }
   }
+}
+
+SphereIndex::Nearest SphereIndex::nearest(const Eigen::Vector3d& p, double within) const {
+  Nearest best{within};
+  for_candidates(p, best.clearance,
+                 [&](std::int32_t s) { best.consider(spheres_[static_cast<std::size_t>(s)], p, s); });
   return best;
+}
+
+void SphereIndex::find_near(const Eigen::Vector3d& p, double within, std::vector<Near>& found) const {
+  for_candidates(p, within, [&](std::int32_t s) {
+    const Sphere& sphere = spheres_[static_cast<std::size_t>(s)];
+    const double clearance = (sphere.center - p).norm() - sphere.radius;
+    if (clearance < within) found.push_back({sphere, clearance, s});
+  });
 }
 
 }  // namespace sixdof::ist

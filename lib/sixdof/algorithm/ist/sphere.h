@@ -42,9 +42,26 @@ class SphereIndex {
   struct Nearest {
     double clearance;          ///< Distance from the point to the sphere's surface, negative inside it.
     std::int32_t sphere = -1;  ///< Index into spheres(); -1 if none is nearer than `within`.
+
+    /// Takes sphere `s`, whose index is `i`, if it is nearer to `p`.
+    void consider(const Sphere& s, const Eigen::Vector3d& p, std::int32_t i) {
+      const double other = (s.center - p).norm() - s.radius;
+      if (other < clearance || (other == clearance && sphere >= 0 && i < sphere)) {
+        clearance = other;
+        sphere = i;
+      }
+    }
   };
   /// The sphere whose surface is nearest to `p` among those with a clearance below `within`; ties by lower index.
   Nearest nearest(const Eigen::Vector3d& p, double within) const;
+
+  struct Near {
+    Sphere sphere;
+    double clearance;    ///< Of the point that was asked for.
+    std::int32_t index;  ///< Into spheres().
+  };
+  /// Appends all spheres with a clearance below `within` of `p`, in no particular order.
+  void find_near(const Eigen::Vector3d& p, double within, std::vector<Near>& found) const;
 
  private:
   struct Cell {
@@ -54,6 +71,8 @@ class SphereIndex {
   std::uint64_t key(std::size_t size_class, std::int64_t x, std::int64_t y, std::int64_t z) const;
   std::size_t slot(std::uint64_t key) const;
   void grow();
+  template <class Visit>
+  void for_candidates(const Eigen::Vector3d& p, const double& within, const Visit& visit) const;
 
   double largest_;
   std::vector<Sphere> spheres_;
