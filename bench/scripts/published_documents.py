@@ -40,7 +40,7 @@ FACTS = PUBLISHED / "parts.json"
 FIGURES = ROOT / "bench/scripts/figures.json"  # {name: [FILE, PATH, FORMAT]}
 DRAWINGS = ROOT / "bench/scripts/drawings.json"  # {SVG: [FIGURE, FILES AND OPTIONS...]}
 # Parts that hold all that they are compared with; their sections name their commits.
-OWN_COMMIT = {"casts", "contacts", "deform", "depths", "losses", "paper", "rivals"}
+OWN_COMMIT = {"casts", "contacts", "deform", "depths", "equivalent", "losses", "paper", "rivals", "scenarios"}
 PROGRAM = ROOT / "build/release/bin/sixdof"
 MARK = re.compile(r"<!--= (?P<what>.*?) -->(?P<text>.*?)<!--=-->", re.S)
 STEP = re.compile(r"(?P<key>[^.\[\]]+)(\[(?P<chosen>[^\]]*)\])?\.?")

@@ -191,7 +191,7 @@ def recommend(file, *words):
 
 def parts():
     """All parts, the shortest first."""
-    equal_time = [Step("equivalent.json", ["sixdof", "equivalent", "--paper", "-o", "{out}"], 20, resumes=True),
+    equal_time = [Step("equivalent.json", ["sixdof", "equivalent", "--paper", "-o", "{out}"], 40, resumes=True),
                   # Of a whole file this measures nothing and prints.
                   Step("paper.txt", ["sixdof", "equivalent", "--paper", "--resume", "--output={folder}/equivalent.json",
                                      "--markdown"], 0.1, prints=True)]
