@@ -151,6 +151,18 @@ TEST(ResidualNoise, AnOppositeForceIsComparedWithItself) {
   EXPECT_THROW(residual_noise(ideal, ideal, 1000.0, -1.0), BadArgument);
 }
 
+/// As the torque of a point shell has it in Ia, next to the block's ends only.
+TEST(ResidualNoise, IsEmptyForAnIdealThatActsAtTheEndsOnly) {
+  std::vector<double> noisy = tone(1000, 120.0, 0.2);
+  for (double& value : noisy) value += 1.0;
+  const std::vector<Eigen::Vector3d> measured = along_x(noisy);
+  std::vector<double> ends(1000, 0.0);
+  for (std::size_t k = 0; k < 6; ++k) ends[k] = ends[999 - k] = 1.0;
+  EXPECT_FALSE(residual_noise(along_x(ends), measured, 1000.0, 50.0));
+  ends[100] = 1.0;
+  EXPECT_TRUE(residual_noise(along_x(ends), measured, 1000.0, 50.0));
+}
+
 TEST(ShortTimeSpectrum, ShowsWhenAToneStarts) {
   // Silence, then 125 Hz at 1 kHz.
   std::vector<double> signal(512, 0.0);

@@ -132,17 +132,19 @@ std::optional<double> residual_noise(Vectors ideal, Vectors measured, double rat
   const std::vector<double> window = hann(ideal.size());
   FourierTransform transform(ideal.size());
   std::vector<double> residual_energy(ideal.size() / 2 + 1, 0.0);
-  double reference_energy = 0.0;
+  double reference_energy = 0.0, without_window = 0.0;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const std::span<double> x = transform.input();
     for (std::size_t k = 0; k < ideal.size(); ++k) {
       x[k] = window[k] * (measured[k][axis] - gain * ideal[k][axis]);
       const double reference = gain > 0.0 ? gain * ideal[k][axis] : measured[k][axis];
       reference_energy += window[k] * window[k] * reference * reference;
+      without_window += reference * reference;
     }
     transform.add_energy(residual_energy);
   }
-  if (reference_energy == 0.0) return std::nullopt;
+  constexpr double k_least_share = 1e-6;  // that the window leaves of the energy; 0.375 of a constant
+  if (reference_energy <= k_least_share * without_window) return std::nullopt;
   double above = 0.0;
   for (std::size_t j = 0; j < residual_energy.size(); ++j) {
     if (frequency_of(j, ideal.size(), rate_hz) > cutoff_hz) above += residual_energy[j];

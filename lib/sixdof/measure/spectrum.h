@@ -38,7 +38,8 @@ std::optional<double> nu_direction(Vectors ideal, Vectors measured, double rate_
 /// Noise: energy of the residual (measured minus gain times ideal, as vectors, with the least-squares gain) above the
 /// cut-off, over the energy of gain times ideal; a pure number. A Hann window on both suppresses the high frequencies
 /// of an open path's ends. If the gain is not positive (the response points the wrong way), the whole measured series
-/// is the residual, over its own energy. Empty where the ideal or the measured series is zero throughout.
+/// is the residual, over its own energy. Empty where the ideal or the measured series is zero throughout, or zero but
+/// for the ends, where the window leaves less than 1e-6 of its energy.
 /// @param rate_hz steps per second
 /// @throws BadArgument if the cut-off is negative or not below half of the rate
 std::optional<double> residual_noise(Vectors ideal, Vectors measured, double rate_hz, double cutoff_hz);
