@@ -152,14 +152,16 @@ TEST(ResidualNoise, AnOppositeForceIsComparedWithItself) {
 }
 
 /// As the torque of a point shell has it in Ia, next to the block's ends only.
-TEST(ResidualNoise, IsEmptyForAnIdealThatActsAtTheEndsOnly) {
+TEST(Spectrum, OfAnIdealThatActsAtTheEndsOnlyIsEmpty) {
   std::vector<double> noisy = tone(1000, 120.0, 0.2);
   for (double& value : noisy) value += 1.0;
   const std::vector<Eigen::Vector3d> measured = along_x(noisy);
   std::vector<double> ends(1000, 0.0);
   for (std::size_t k = 0; k < 6; ++k) ends[k] = ends[999 - k] = 1.0;
   EXPECT_FALSE(residual_noise(along_x(ends), measured, 1000.0, 50.0));
+  EXPECT_FALSE(nu_direction(along_x(ends), measured, 1000.0, 50.0));
   ends[100] = 1.0;
+  EXPECT_TRUE(nu_direction(along_x(ends), measured, 1000.0, 50.0));
   EXPECT_TRUE(residual_noise(along_x(ends), measured, 1000.0, 50.0));
 }
 

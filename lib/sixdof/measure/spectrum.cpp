@@ -14,6 +14,9 @@
 namespace sixdof {
 namespace {
 
+/// Of an ideal's energy that a Hann window must leave; of a constant it leaves 0.375.
+constexpr double k_least_share = 1e-6;
+
 /// Real-to-complex Fourier transform of a fixed length, with its own buffers.
 class FourierTransform {
  public:
@@ -112,6 +115,14 @@ std::optional<double> nu_direction(Vectors ideal, Vectors measured, double rate_
     }
     return below;
   };
+  const double ideal_zero = k_zero_fraction * peak(ideal);
+  double acting = 0.0, seen = 0.0;  // steps, and how much of them the window leaves
+  for (std::size_t k = 0; k < ideal.size(); ++k) {
+    if (ideal[k].norm() <= ideal_zero) continue;
+    acting += 1.0;
+    seen += window[k] * window[k];
+  }
+  if (seen <= k_least_share * acting) return std::nullopt;
   const double ideal_energy = energy_below(ideal);
   if (ideal_energy == 0.0) return std::nullopt;
   return energy_below(measured) / ideal_energy;
@@ -143,7 +154,6 @@ std::optional<double> residual_noise(Vectors ideal, Vectors measured, double rat
     }
     transform.add_energy(residual_energy);
   }
-  constexpr double k_least_share = 1e-6;  // that the window leaves of the energy; 0.375 of a constant
   if (reference_energy <= k_least_share * without_window) return std::nullopt;
   double above = 0.0;
   for (std::size_t j = 0; j < residual_energy.size(); ++j) {

@@ -30,7 +30,8 @@ std::optional<double> nu(std::span<const double> ideal, std::span<const double> 
 /// has to end at the cut-off: over all frequencies the energy of any unit vectors is their number (Parseval), and the
 /// ratio is 1 whatever they are. A direction that is wrong but smooth has 1, too; gamma measures it. A vector up to
 /// k_zero_fraction of its series' longest is zero and has no energy, so a miss lowers the ratio. A Hann window is on
-/// both. Empty where the ideal is zero throughout.
+/// both. Empty where the ideal is zero throughout, or zero but for the ends, where the window leaves less than 1e-6 of
+/// it.
 /// @param rate_hz steps per second
 /// @throws BadArgument if the cut-off is negative or not below half of the rate, or lengths differ
 std::optional<double> nu_direction(Vectors ideal, Vectors measured, double rate_hz, double cutoff_hz);
