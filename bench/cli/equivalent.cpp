@@ -363,7 +363,7 @@ void add_equivalent_command(CLI::App& app) {
   command->add_option("--reach", options->reach, "Search beyond the grid by this factor on both sides")
       ->type_name("FACTOR")
       ->check(CLI::Range(1.0, 1000.0))
-      ->default_str("2; with --paper 1 for counts");
+      ->default_str("2; with --paper 4 for counts");
   command
       ->add_option("--memory", options->largest_gb,
                    "Leave out resolutions predicted to need more memory, in GB; 0: no limit")
