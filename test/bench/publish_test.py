@@ -180,10 +180,10 @@ class Repository(unittest.TestCase):
 
 class Short(unittest.TestCase):
     def test_rows_keep_what_tables_show_in_few_digits(self):
-        row = ROW | {"cpu_time": 1.23456789, "outliers": {"a": "p"}, "checksum": "0", "nodes": 17}
+        row = ROW | {"cpu_time": 1.23456789, "configurations": 1991808.0, "outliers": {"a": "p"}, "checksum": "0", "nodes": 17}
         short = parts.compact({"context": {"commit": "abc", "executable": "/a/path", "checksum": "0"}, "benchmarks": [row]})
         self.assertEqual(short["context"], {"commit": "abc"})
-        self.assertEqual(short["benchmarks"], [ROW | {"cpu_time": 1.235}])
+        self.assertEqual(short["benchmarks"], [ROW | {"cpu_time": 1.235, "configurations": 1991808}])
         self.assertEqual(json.loads(parts.as_text(short)), short)
 
     def test_paths_are_those_of_the_repository(self):
