@@ -1,7 +1,6 @@
 #include <sixdof/algorithm/ist/packing.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
