@@ -90,7 +90,8 @@ void run(const Options& options) {
   const std::string filter = benchmark::GetBenchmarkFilter();
   const std::vector<VariantRequest> of_suite =
       options.suite.empty() ? std::vector<VariantRequest>() : suite_variants(options.suite);
-  auto settings = parse_parameters(register_variants(options.parameters, of_suite, registry), registry);
+  const std::vector<std::string> parameters = register_variants(options.parameters, of_suite, registry);
+  auto settings = parse_parameters(parameters, registry);
   SetCatalogue catalogue;
   if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);
   PairCache cache(options.sample, options.seed,
@@ -102,6 +103,7 @@ void run(const Options& options) {
   const Resources resources{.registry = registry,
                             .catalogue = catalogue,
                             .settings = std::move(settings),
+                            .assignments = parse_assignments(parameters, registry),
                             .cache = cache,
                             .seed = options.seed};
 

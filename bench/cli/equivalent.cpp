@@ -21,6 +21,7 @@
 #include <sixdof/process/remote_algorithm.h>
 #include <sixdof/results/paper.h>
 #include <sixdof/results/results.h>
+#include <sixdof/scenario/path_settings.h>
 #include <sixdof/scenario/scenario.h>
 #include "bench/cli/equivalent_text.h"
 #include "bench/cli/shared.h"
@@ -101,7 +102,7 @@ study::Grids parse_grids(const std::vector<std::string>& texts) {
 struct Candidate {
   const Algorithm* algorithm = nullptr;
   std::array<study::ResolutionAxis, 2> axes;
-  Settings settings;
+  std::vector<std::string> assignments;  ///< What the user sets of it.
 };
 
 /// In the paper's table counts, such as spheres, are searched up to four times beyond the sweep, since the finest value
@@ -116,14 +117,14 @@ double reach_of(const Options& options, const Traits& traits) {
 
 /// @throws BadArgument if an algorithm cannot be studied, or a parameter or a grid belongs to none
 std::vector<Candidate> select(const Options& options, const Registry& registry,
-                              const std::map<std::string, Settings>& settings) {
+                              const std::map<std::string, std::vector<std::string>>& assignments) {
   const study::Grids grids = parse_grids(options.grids);
   std::vector<Candidate> candidates;
   for (const std::string& name : options.algorithms) {
     const Algorithm& algorithm = registry.find(name);
     if (!algorithm.traits().answers.respond) throw BadArgument(fmt::format("{} gives no response", name));
     const double reach = reach_of(options, algorithm.traits());
-    candidates.push_back({&algorithm, study::resolution_axes(algorithm.traits(), grids, reach), settings.at(name)});
+    candidates.push_back({&algorithm, study::resolution_axes(algorithm.traits(), grids, reach), assignments.at(name)});
   }
   const auto searched = [&](const std::string& parameter, const std::string& algorithm) {
     return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
@@ -164,11 +165,12 @@ study::SearchTask task_of(const Options& options, const std::string& name, const
   const Traits& traits = candidate.algorithm->traits();
   const IdealLaw law = parse_ideal_law(options.law, traits);
   study::check_axes(candidate.axes);
-  const auto measure = [scenario, candidate, law, weights = parse_weights(options.weights),
+  const Settings settings = settings_along(name, *candidate.algorithm, candidate.assignments);
+  const auto measure = [scenario, candidate, settings, law, weights = parse_weights(options.weights),
                         steps = options.steps](const study::Resolution& at) {
     const study::ScenarioStudy study{.scenario = *scenario,
                                      .algorithm = *candidate.algorithm,
-                                     .settings = candidate.settings,
+                                     .settings = settings,
                                      .law = law,
                                      .weights = weights,
                                      .steps = steps};
@@ -176,7 +178,7 @@ study::SearchTask task_of(const Options& options, const std::string& name, const
   };
   return {.scenario = name,
           .algorithm = traits.name,
-          .settings = candidate.settings,
+          .settings = settings,
           .law = std::string(to_string(law)),
           .axes = candidate.axes,
           .targets = targets(options),
@@ -215,7 +217,7 @@ class EquivalentCommand {
     parse_weights(options.weights);
     register_all_algorithms(registry_, options.process);
     settings_ = bench::parse_parameters(options.parameters, registry_);
-    candidates_ = select(options, registry_, settings_);
+    candidates_ = select(options, registry_, bench::parse_assignments(options.parameters, registry_));
   }
 
   void run() {

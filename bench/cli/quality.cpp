@@ -13,6 +13,7 @@
 #include <sixdof/measure/metrics.h>
 #include <sixdof/results/paper.h>
 #include <sixdof/scenario/evaluation.h>
+#include <sixdof/scenario/path_settings.h>
 #include <sixdof/scenario/scenario.h>
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
@@ -85,7 +86,8 @@ void run(const Options& options) {
   shape.set_all(options.shape);
   const auto scenario = make_scenario(options.scenario, shape);
   if (options.algorithm.name.empty()) throw BadArgument("--algorithm is needed");
-  const auto [registry, algorithm, settings] = select_algorithm(options.algorithm);
+  const auto [registry, algorithm, at_default] = select_algorithm(options.algorithm);
+  const Settings settings = settings_along(options.scenario, *algorithm, options.algorithm.parameters);
   const Traits& traits = algorithm->traits();
   if (!traits.answers.respond) throw BadArgument(fmt::format("{} gives no response", traits.name));
   const IdealLaw law = parse_ideal_law(options.law, traits);
@@ -131,9 +133,10 @@ void add_quality_command(CLI::App& app) {
       ->type_name("FILE");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run(*options); });
-  add_examples(
-      *command, "sixdof quality --scenario II --algorithm vps --steps 100",
-      "sixdof quality --scenario III --algorithm ist --shape rotation_degrees=20 --law gradient -o III-ist.h5");
+  add_examples(*command, "sixdof quality --scenario II --algorithm vps --steps 100",
+               "sixdof quality --scenario III --algorithm ist --shape rotation_degrees=20 --law gradient -o III-ist.h5",
+               "Along Ia, II and III ist has a finer resolution than its default, of at most 0.9 ms a query; making it "
+               "takes up to a minute, once. -p spheres=10000 sets another.");
 }
 
 }  // namespace sixdof::cli

@@ -347,9 +347,10 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   return pass_on(flags, options, option_names(app));
 }
 
-std::map<std::string, Settings> parse_parameters(const std::vector<std::string>& parameters, const Registry& registry) {
-  std::map<std::string, Settings> settings;
-  for (const auto& algorithm : registry.all()) settings.emplace(algorithm->traits().name, algorithm->settings());
+std::map<std::string, std::vector<std::string>> parse_assignments(const std::vector<std::string>& parameters,
+                                                                  const Registry& registry) {
+  std::map<std::string, std::vector<std::string>> assignments;
+  for (const auto& algorithm : registry.all()) assignments[algorithm->traits().name] = {};
   for (const std::string& text : parameters) {
     const auto colon = text.find(':');
     if (colon == std::string::npos) {
@@ -359,8 +360,16 @@ std::map<std::string, Settings> parse_parameters(const std::vector<std::string>&
     const auto suits = [&](const Traits& traits) { return has_parameter(traits, assignment); };
     const std::vector<std::string> variants = variants_of(name, registry);
     for (const std::string& each : variants.empty() ? with_rivals({name}, registry, suits) : variants) {
-      settings.at(registry.find(each).traits().name).set_all({assignment});
+      assignments[registry.find(each).traits().name].push_back(assignment);
     }
+  }
+  return assignments;
+}
+
+std::map<std::string, Settings> parse_parameters(const std::vector<std::string>& parameters, const Registry& registry) {
+  std::map<std::string, Settings> settings;
+  for (const auto& [name, assignments] : parse_assignments(parameters, registry)) {
+    settings.emplace(name, registry.find(name).settings()).first->second.set_all(assignments);
   }
   return settings;
 }

@@ -57,9 +57,14 @@ std::filesystem::path default_manifest();
 /// @returns the exit code if the program should end now, -1 otherwise
 int parse_options(int argc, const char* const* argv, Options& options);
 
-/// The settings of every algorithm by its name: defaults, and what the command line says.
+/// What the command line sets of every algorithm, by its name: "NAME=VALUE" each; empty for nothing.
 /// @param parameters "ALGORITHM:NAME=VALUE"; "rivals" stands for all rivals that have the parameter
-/// @throws BadArgument for an algorithm or parameter that does not exist
+/// @throws BadArgument for an algorithm that does not exist
+std::map<std::string, std::vector<std::string>> parse_assignments(const std::vector<std::string>& parameters,
+                                                                  const Registry& registry);
+
+/// The settings of every algorithm by its name: defaults, and what the command line says.
+/// @throws BadArgument as parse_assignments() does, and for a parameter or value that does not exist
 std::map<std::string, Settings> parse_parameters(const std::vector<std::string>& parameters, const Registry& registry);
 
 }  // namespace sixdof::bench

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
@@ -22,6 +23,8 @@ struct Resources {
   const Registry& registry;
   const SetCatalogue& catalogue;
   std::map<std::string, Settings> settings;  ///< Of every algorithm, by name.
+  /// What the user sets of every algorithm, by its name: "NAME=VALUE" each.
+  std::map<std::string, std::vector<std::string>> assignments;
   PairCache& cache;
   std::uint64_t seed = 1;  ///< Of orders and of rays.
 

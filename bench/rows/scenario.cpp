@@ -7,6 +7,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/scenario/evaluation.h>
+#include <sixdof/scenario/path_settings.h>
 #include "bench/harness/failure_counters.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
@@ -29,6 +30,7 @@ struct ScenarioRow {
   const Algorithm& algorithm;
   std::string name;  ///< Of the scenario.
   IdealLaw law = law_of(algorithm.traits());
+  Settings settings = settings_along(name, algorithm, resources.assignments.at(algorithm.traits().name));
   std::unique_ptr<Scenario> scenario = {};
   std::unique_ptr<Query> query = {};
   Recording recording = {};
@@ -48,7 +50,7 @@ struct ScenarioRow {
     count_statuses(state.counters, failures);
     for (const auto& [counted, count] : query->footprint().counts) state.counters[counted] = count;
     state.counters["steps"] = static_cast<double>(recording.size());
-    std::string label = fmt::format("law={} {}", to_string(law), resources.settings_of(algorithm).to_string());
+    std::string label = fmt::format("law={} {}", to_string(law), settings.to_string());
     const std::string& failure = recording.first_failure.empty() ? failures.first() : recording.first_failure;
     if (!failure.empty()) label += fmt::format("; first failure: {}", failure);
     state.SetLabel(label);
@@ -56,7 +58,7 @@ struct ScenarioRow {
 
   void prepare(double seconds) {
     scenario = make_scenario(name);
-    auto prepared = resources.cache.prepare(algorithm, resources.settings_of(algorithm), scenario->a(), scenario->b());
+    auto prepared = resources.cache.prepare(algorithm, settings, scenario->a(), scenario->b());
     // The time of a few steps tells how many the row can afford; a multiple of four keeps closed paths symmetric.
     constexpr std::size_t k_trial = 12;
     const Recording trial = record(*scenario, *prepared, k_trial);
@@ -105,7 +107,7 @@ std::vector<PlannedRow> scenario_rows(const Resources& resources) {
                       .run = [row](benchmark::State& state, const Share& share) { row->run(state, share.seconds); },
                       .fields = {.query = "scenario",
                                  .algorithm = algorithm->traits().name,
-                                 .settings = resources.settings_of(*algorithm).to_string(),
+                                 .settings = row->settings.to_string(),
                                  .runtime = algorithm->traits().runtime,
                                  .scenario = scenario,
                                  .law = std::string(to_string(row->law)),

@@ -11,6 +11,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/report/series.h>
 #include <sixdof/scenario/evaluation.h>
+#include <sixdof/scenario/path_settings.h>
 #include <sixdof/scenario/scenario.h>
 #include "lib/python/arrays.h"
 #include "lib/python/bindings.h"
@@ -39,7 +40,10 @@ py::dict record_signals(const std::string& scenario_name, const Parameters& shap
   const Algorithm& algorithm = all_algorithms().find(algorithm_name);
   const Traits& traits = algorithm.traits();
   if (!traits.answers.respond) throw BadArgument(fmt::format("algorithm: {} gives no response", traits.name));
-  const Settings settings = settings_of(algorithm, parameters);
+  settings_of(algorithm, parameters);  // throws with the algorithm's name
+  std::vector<std::string> assignments;
+  for (const auto& [name, text] : parameters) assignments.push_back(fmt::format("{}={}", name, text));
+  const Settings settings = settings_along(scenario_name, algorithm, assignments);
   const IdealLaw law = parse_ideal_law(law_word, traits);
   Recording recording;
   Measures measures;

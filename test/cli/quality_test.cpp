@@ -74,6 +74,14 @@ TEST(Quality, StoresTheCommandThatRecordsTheSeriesAgain) {
   EXPECT_EQ(measures_of_answers(recorded.out), measures_of_answers(again.out));
 }
 
+/// Along a path `ist` has a resolution of its own, unless the user sets one.
+TEST(Quality, TakesTheResolutionThatIsSet) {
+  const auto result = quality("--scenario II --algorithm ist -p spheres=100 --steps 20 --json");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto settings = nlohmann::json::parse(result.out).at("settings").get<std::string>();
+  EXPECT_THAT(settings, HasSubstr("spheres=100,spheres_b=0,"));
+}
+
 TEST(Quality, RefusesBadArgumentsAndNamesThem) {
   EXPECT_EQ(quality("--algorithm null").exit_code, k_exit_usage);
   for (const auto& [arguments, words] :

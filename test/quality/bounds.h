@@ -30,7 +30,7 @@ inline constexpr double k_margin = 2.0;
 inline constexpr double k_better_margin = 4.0;
 inline constexpr double k_scale_margin = 1.5;
 
-/// An algorithm with its default settings, or with some parameters changed.
+/// An algorithm with its default settings along a path, or with some parameters changed.
 struct Subject {
   std::string algorithm;
   std::vector<std::string> parameters;  ///< "name=value"

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include <sixdof/scenario/path_settings.h>
 #include "bench/common/all_algorithms.h"
 
 namespace sixdof {
@@ -17,8 +18,7 @@ const Recorded& recorded(const std::string& scenario, const std::string& algorit
     register_all_algorithms(registry);
     const auto& [name, parameters] = subject(algorithm);
     const Algorithm& found = registry.find(name);
-    r.settings = found.settings();
-    r.settings.set_all(parameters);
+    r.settings = settings_along(scenario, found, parameters);
     r.scenario = make_scenario(scenario);
     r.query = found.prepare(r.scenario->a(), r.scenario->b(), r.settings);
     r.recording = record(*r.scenario, *r.query, k_gate_steps);

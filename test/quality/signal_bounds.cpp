@@ -20,7 +20,7 @@ constexpr std::string_view k_voxel_direction = "points enter voxels of other lay
 constexpr std::string_view k_field_depth =
     "the largest depth is that of one point; the distance is rounded along edges";
 constexpr std::string_view k_field_direction = "points 0.4 % of the diagonal apart";
-constexpr std::string_view k_packing = "default packing of spheres; unfilled volume does not count";
+constexpr std::string_view k_packing = "unfilled volume does not count";
 constexpr std::string_view k_cones = "the axes of the normal cones that take part change along the path";
 constexpr std::string_view k_centers = "the lines of centres of the spheres that overlap change along the path";
 constexpr std::string_view k_steepest = "the steepest descent follows the gaps between the spheres";
@@ -42,12 +42,15 @@ const std::vector<BoundLine>& signal_bounds() {
     {"Ia", "vps", depth, k_voxel_depth, characterised, {{"sigma_q", 0.026}}},
     {"Ia", "vps", depth, k_scale, scale, {{"gain_q", 0.915}}},
     {"Ia", "vps", depth, k_voxel_direction, characterised, {{"nu_direction_F", 7e-05}}},
-    {"Ia", "vps-field", depth, k_field_depth, characterised, {{"sigma_q", 0.0057}}},
+    {"Ia", "vps-field", depth, k_field_depth, characterised, {{"sigma_q", 0.00021}}},
     {"Ia", "vps-field", depth, k_scale, scale, {{"gain_q", 0.63}}},
     {"Ia", "vps-field", depth, k_field_direction, characterised, {{"nu_direction_F", 7.8e-10}}},
-    {"Ia", "ist", volume, k_packing, characterised, {{"sigma_q", 0.21}}},
-    {"Ia", "ist", volume, k_scale, scale, {{"gain_q", 0.578}}},
-    {"Ia", "ist", volume, k_cones, characterised, {{"nu_direction_F", 0.0017}}},
+    {"Ia", "ist", volume, k_packing, characterised, {{"sigma_q", 0.099}}},
+    {"Ia", "ist", volume, k_scale, scale, {{"gain_q", 0.704}}},
+    {"Ia", "ist", volume, k_cones, characterised, {{"nu_direction_F", 0.0002}}},
+    {"Ia", "ist-10000", volume, k_packing, characterised, {{"sigma_q", 0.21}}},
+    {"Ia", "ist-10000", volume, k_scale, scale, {{"gain_q", 0.578}}},
+    {"Ia", "ist-10000", volume, k_cones, characterised, {{"nu_direction_F", 0.0017}}},
     {"Ia", "ist-volume", volume, k_packing, characterised, {{"sigma_q", 0.21}}},
     {"Ia", "ist-volume", volume, k_scale, scale, {{"gain_q", 0.578}}},
     {"Ia", "ist-volume", volume, k_centers, characterised, {{"nu_direction_F", 0.27}}},
@@ -96,9 +99,12 @@ const std::vector<BoundLine>& signal_bounds() {
     {"II", "vps-field", depth, k_field_depth, characterised, {{"sigma_q", 0.0012}}},
     {"II", "vps-field", depth, k_scale, scale, {{"gain_q", 1}}},
     {"II", "vps-field", depth, k_field_direction, characterised, {{"nu_direction_F", 1.9e-09}}},
-    {"II", "ist", volume, k_packing, characterised, {{"sigma_q", 0.0056}}},
-    {"II", "ist", volume, k_scale, scale, {{"gain_q", 0.828}}},
-    {"II", "ist", volume, k_cones, characterised, {{"nu_direction_F", 2.4e-06}}},
+    {"II", "ist", volume, k_packing, characterised, {{"sigma_q", 0.001}}},
+    {"II", "ist", volume, k_scale, scale, {{"gain_q", 0.936}}},
+    {"II", "ist", volume, k_cones, characterised, {{"nu_direction_F", 2.4e-08}}},
+    {"II", "ist-10000", volume, k_packing, characterised, {{"sigma_q", 0.0056}}},
+    {"II", "ist-10000", volume, k_scale, scale, {{"gain_q", 0.828}}},
+    {"II", "ist-10000", volume, k_cones, characterised, {{"nu_direction_F", 2.4e-06}}},
     {"II", "ist-volume", volume, k_packing, characterised, {{"sigma_q", 0.0056}}},
     {"II", "ist-volume", volume, k_scale, scale, {{"gain_q", 0.828}}},
     {"II", "ist-volume", volume, k_centers, characterised, {{"nu_direction_F", 6.5e-07}}},
@@ -123,9 +129,12 @@ const std::vector<BoundLine>& signal_bounds() {
     {"III", "vps-field", wall_traction, k_field_depth, characterised, {{"sigma_q", 0.0044}}},
     {"III", "vps-field", wall_traction, k_scale, scale, {{"gain_q", 0.984}}},
     {"III", "vps-field", wall_traction, k_field_direction, characterised, {{"nu_direction_T", 7.8e-11}}},
-    {"III", "ist", volume, k_packing, characterised, {{"sigma_q", 0.13}}},
-    {"III", "ist", volume, k_scale, scale, {{"gain_q", 0.434}}},
-    {"III", "ist", volume, k_cones, characterised, {{"nu_direction_T", 1.3e-07}}},
+    {"III", "ist", normals, k_packing, characterised, {{"sigma_q", 0.084}}},
+    {"III", "ist", normals, k_scale, scale, {{"gain_q", 0.566}}},
+    {"III", "ist", normals, k_cones, characterised, {{"nu_direction_T", 7e-08}}},
+    {"III", "ist-10000", volume, k_packing, characterised, {{"sigma_q", 0.13}}},
+    {"III", "ist-10000", volume, k_scale, scale, {{"gain_q", 0.434}}},
+    {"III", "ist-10000", volume, k_cones, characterised, {{"nu_direction_T", 1.3e-07}}},
     {"III", "ist-volume", volume, k_packing, characterised, {{"sigma_q", 0.13}}},
     {"III", "ist-volume", volume, k_scale, scale, {{"gain_q", 0.434}}},
     {"III", "ist-volume", volume, k_centers, characterised, {{"nu_direction_T", 5.6e-06}}},

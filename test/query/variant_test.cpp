@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,9 @@ TEST(VariantAlgorithm, HasItsSettingsAsDefaultsAndInItsName) {
   EXPECT_EQ(variant.traits().name, "it@size=3.5e1,mode=fast");
   EXPECT_EQ(base_name(variant.traits().name), "it");
   EXPECT_EQ(base_name("it"), "it");
+  EXPECT_EQ(variant_assignments(variant.traits().name), (std::vector<std::string>{"size=3.5e1", "mode=fast"}));
+  EXPECT_EQ(variant_assignments(variant_name("it", {"size=2"})), std::vector<std::string>{"size=2"});
+  EXPECT_EQ(variant_assignments("it"), std::vector<std::string>());
   EXPECT_EQ(variant.settings().to_string(), "size=3.5e1,mode=fast");
   EXPECT_EQ(&base_algorithm(variant), &variant.base());
   EXPECT_EQ(&base_algorithm(variant.base()), &variant.base());

@@ -424,14 +424,29 @@ TEST(ObjectsTable, HasTrianglesOfModelsAndHashesOfAll) {
 }
 
 TEST(SettingsTable, CountsTheRowsOfEveryAlgorithm) {
+  auto row = test::row("distance", "ode", "p", "distance", 5.0, 1.0);
+  row["sixdof"]["settings"] = {{"combine", "mean"}};
   const Results results =
-      test::results_of({test::row("distance", "ode", "p", "distance", 5.0, 1.0)},
-                       {{"algorithm:ode", "0.16"}, {"settings:ode", "combine=mean"}, {"algorithm:vps", "1"}});
+      test::results_of({row}, {{"algorithm:ode", "0.16"}, {"settings:ode", "combine=mean"}, {"algorithm:vps", "1"}});
   const DataTable table = settings_table(results);
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_EQ(text_in(table, table.rows[0], "settings"), "combine=mean");
   EXPECT_EQ(number_in(table, table.rows[0], "in_rows"), 1.0);
   EXPECT_EQ(number_in(table, table.rows[1], "in_rows"), 0.0);
+}
+
+/// Along a scenario's path an algorithm may have another resolution than by default.
+TEST(SettingsTable, HasTheSettingsOfRowsThatHaveOthers) {
+  auto along_path = test::row("scenario", "ist", "p", "distance", 5.0, 1.0);
+  along_path["sixdof"]["settings"] = {{"spheres", 150000}, {"fill", 1}};
+  auto usual = test::row("respond", "ist", "p", "distance", 5.0, 1.0);
+  usual["sixdof"]["settings"] = {{"spheres", 10000}, {"fill", 1.0}};
+  const DataTable table = settings_table(
+      test::results_of({along_path, usual}, {{"algorithm:ist", "1"}, {"settings:ist", "spheres=10000,fill=1.0"}}));
+  ASSERT_EQ(table.rows.size(), 2u);
+  for (const auto& row : table.rows)
+    EXPECT_EQ(number_in(table, row, "in_rows"), 1.0) << text_in(table, row, "settings");
+  EXPECT_EQ(text_in(table, table.rows[1], "settings"), "spheres=150000,fill=1");
 }
 
 }  // namespace

@@ -104,6 +104,19 @@ TEST(Evaluation, LeakageIsScaledByTheReferenceLength) {
   EXPECT_NEAR(pushed.at("leakage"), 0.25 * 20.0, k_rounding);
 }
 
+/// By some laws the ideal torque of a plate is 1e-13, by rounding: nothing is measured relative to it.
+TEST(Evaluation, IdealsOfRoundingAreNone) {
+  const auto plate = make_scenario("Ib");
+  IdealQuery query(*plate, IdealLaw::normals, [](Response& r, double, std::size_t) { r.torque.x() += 3.0; });
+  const Recording recording = record(*plate, query, 500);
+  const auto ideal = plate->ideal(IdealLaw::normals, 0.5);
+  ASSERT_GT(ideal->torque.norm(), 0.0) << "then this test shows nothing";
+  const auto m = by_name(evaluate(*plate, recording, IdealLaw::normals));
+  for (const char* const measure : {"sigma_T", "gamma_T_deg", "nu_T", "noise_T"}) EXPECT_EQ(m.count(measure), 0u);
+  EXPECT_NEAR(m.at("leakage"), 3.0 / (ideal->force.norm() * plate->description().reference_length), 1e-6);
+  EXPECT_EQ(m.count("sigma_T_all"), 1u) << "at the ends of the plate there is a torque";
+}
+
 /// In IV the measured penalty is the square of the ideal, in III it is three times the ideal.
 TEST(Evaluation, PenaltyIsComparedWithItsIdeal) {
   const auto orbit = make_scenario("IV");

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/query/variant.h>
 
 namespace sixdof {
 namespace {
@@ -88,6 +89,7 @@ TEST(Scenario, KnowsTheLimitsOfThisProjectsAlgorithms) {
                                             {"ist-descent", ResponseLaw::volume, IdealLaw::descent}}) {
     const Traits traits{.name = name, .law = declared};
     EXPECT_EQ(own_law(traits), own) << name;
+    EXPECT_EQ(own_law({.name = variant_name(name, {"some=value"}), .law = declared}), own) << name;
     EXPECT_EQ(parse_ideal_law("paper", traits), is_of_depth(declared) ? IdealLaw::paper_depth : IdealLaw::paper_volume);
   }
 }
@@ -162,18 +164,34 @@ TEST(Scenario, ConeGetsShallowerAtTheEnds) {
   EXPECT_EQ(depth_at(-10.1), 0.0);
 }
 
-/// In the window the whole tip is over the block, and the shortest displacement out of it is upwards.
-TEST(Scenario, WindowOfTheConeEndsWhereItsTipLeaves) {
+/// In the window the whole tip is over the block, the shortest displacement out of it is upwards, and no part of the
+/// tip is nearer to an end than to top and bottom.
+TEST(Scenario, WindowOfTheConeEndsWhereAnEndBeginsToMatter) {
   const auto inside = [](const Scenario& scenario, double x) { return scenario.in_window((x + 30.0) / 960.0); };
-  const auto slender = make_scenario("Ia");  // upwards is shorter from x = 20 sqrt(1.25) - 10 = 12.36 on
+  // Half-way between top and bottom, 15 from both, the cone has the radius 2.5.
+  const auto slender = make_scenario("Ia");
   Settings settings = scenario_settings("Ia");
-  settings.set("cone_radius", "60");  // tip of radius 20; upwards is shorter from 8.28 on
+  settings.set("cone_radius", "60");  // tip of radius 20
   const auto wide = make_scenario("Ia", settings);
-  for (const auto& [scenario, end] : {std::pair(slender.get(), 12.36), std::pair(wide.get(), 20.0)}) {
+  const auto thin = make_scenario("Ib");  // upwards is shorter from x = 20 sqrt(1.25) - 10 = 12.36 on
+  for (const auto& [scenario, end] :
+       {std::pair(slender.get(), 17.5), std::pair(wide.get(), 20.0), std::pair(thin.get(), 12.36)}) {
     EXPECT_FALSE(inside(*scenario, end - 0.1));
     EXPECT_TRUE(inside(*scenario, end + 0.1));
     EXPECT_TRUE(inside(*scenario, 900.0 - end - 0.1));
     EXPECT_FALSE(inside(*scenario, 900.0 - end + 0.1));
+  }
+}
+
+TEST(Scenario, EndsGiveTheConeATorqueOutsideTheWindowOnly) {
+  const auto scenario = make_scenario("Ia");
+  for (const IdealLaw law : {IdealLaw::traction, IdealLaw::wall_traction, IdealLaw::normals}) {
+    const auto torque_at = [&](double x) {
+      const auto ideal = scenario->ideal(law, (x + 30.0) / 960.0);
+      return ideal->torque.norm() / (ideal->force.norm() * scenario->description().reference_length);
+    };
+    for (const double end : {17.4, 900.0 - 17.4}) EXPECT_GT(torque_at(end), 1e-6) << to_string(law);
+    for (const double inside : {17.6, 450.0, 900.0 - 17.6}) EXPECT_LT(torque_at(inside), 1e-12) << to_string(law);
   }
 }
 

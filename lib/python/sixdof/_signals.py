@@ -64,7 +64,8 @@ def record(scenario: str, algorithm: str, *, steps: int = 1000, law: str = "own"
     """Asks an algorithm for its response along a scenario's path, as `sixdof quality` does.
 
     law: of the ideal: "own" is the algorithm's. shape: parameters of the scenario. out: a file for the signals, which
-    read_signals() and `sixdof report` read. parameters: of the algorithm.
+    read_signals() and `sixdof report` read. parameters: of the algorithm; `ist` has a finer resolution along the
+    paper's paths than elsewhere, where neither `spheres` nor `spheres_b` is given.
     """
     return Signals(_core.record_signals(scenario, {name: text_of(value) for name, value in (shape or {}).items()},
                                         algorithm, {name: text_of(value) for name, value in parameters.items()},

@@ -21,6 +21,9 @@ inline std::string base_name(std::string_view name) { return std::string(name.su
 /// "vps@voxel_size=0.01,point_spacing=0.004". @param assignments each reads "parameter=value"
 std::string variant_name(std::string_view algorithm, const std::vector<std::string>& assignments);
 
+/// {"voxel_size=0.01", "point_spacing=0.004"} of the name above; empty for the name of an algorithm.
+std::vector<std::string> variant_assignments(std::string_view name);
+
 /// An algorithm whose defaults are other values of its parameters, under a name that says so; with none, the algorithm
 /// as it is.
 class VariantAlgorithm final : public Algorithm {

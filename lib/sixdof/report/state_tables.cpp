@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -83,10 +85,15 @@ DataTable settings_table(const Results& results) {
     for (const auto& [key, version] : results.files[file].context) {
       if (!key.starts_with("algorithm:")) continue;
       const std::string name = key.substr(std::string("algorithm:").size());
-      const auto rows = std::ranges::count_if(
-          results.rows, [&](const Row& row) { return row.file == file && row.fields.algorithm == name; });
-      table.rows.push_back({run_name(results, file), name, version, results.files[file].at("settings:" + name),
-                            static_cast<double>(rows)});
+      const std::string usual = results::settings_as_read(results.files[file].at("settings:" + name));
+      std::map<std::string, double> counts{{usual, 0.0}};  // rows may have others, such as those of scenarios
+      for (const Row& row : results.rows) {
+        if (row.file != file || row.fields.algorithm != name) continue;
+        ++counts[row.fields.settings.empty() ? usual : row.fields.settings];
+      }
+      for (const auto& [settings, rows] : counts) {
+        table.rows.push_back({run_name(results, file), name, version, settings, rows});
+      }
     }
   }
   return table;

@@ -89,6 +89,8 @@ Json percent_number(BucketKey key) {
   return whole == key.percent ? Json(whole) : Json(key.percent);
 }
 
+std::string settings_as_read(const std::string& settings) { return settings_text(settings_object(settings)); }
+
 Json to_json_object(BucketKey key) { return {{"kind", to_string(key.kind)}, {"percent", percent_number(key)}}; }
 
 BucketKey bucket_of(const Json& object) {

@@ -54,6 +54,9 @@ nlohmann::ordered_json percent_number(BucketKey key);
 nlohmann::ordered_json to_json_object(BucketKey key);
 BucketKey bucket_of(const nlohmann::ordered_json& object);
 
+/// "name=value,..." as RowFields::settings has it after a result was written and read: numbers in their shortest form.
+std::string settings_as_read(const std::string& settings);
+
 /// Keys are those of RowFields; empty members are left out. "settings"
 /// is an object by parameter, always there, with numbers as numbers.
 nlohmann::ordered_json to_json_object(const RowFields& fields);

@@ -52,7 +52,8 @@ class ConeBlock final : public Scenario {
         shape_(shape),
         slope_(shape.radius / shape.height),
         tip_(slope_ * shape.depth),
-        bottom_(std::max(0.0, shape.depth - shape.block_height)) {}
+        bottom_(std::max(0.0, shape.depth - shape.block_height)),
+        end_reach_(reach_of_end()) {}
 
   Pose pose(double progress) const override {
     return {Eigen::Matrix3d::Identity(), {apex_x(progress), -shape_.depth, 0.0}};
@@ -61,7 +62,7 @@ class ConeBlock final : public Scenario {
   bool in_window(double progress) const override {
     const double x = apex_x(progress);
     const double to_end = std::min(x, shape_.block_length - x);
-    return to_end >= tip_ && depth(x) == shape_.depth;
+    return to_end >= std::max(tip_, end_reach_) && depth(x) == shape_.depth;
   }
 
   std::optional<IdealWrench> ideal(IdealLaw law, double progress) const override {
@@ -95,6 +96,17 @@ class ConeBlock final : public Scenario {
  private:
   double apex_x(double progress) const {
     return -shape_.overshoot + progress * (shape_.block_length + 2.0 * shape_.overshoot);
+  }
+
+  /// Distance of the axis from an end at which that end stops to be the nearest face of any part of the flank: the most
+  /// of the depth below top or bottom plus the flank's radius. Both are linear, with a kink half-way between the faces.
+  double reach_of_end() const {
+    const auto reach = [&](double s) {
+      const double below_top = shape_.depth - s;
+      return std::min(below_top, shape_.block_height - below_top) + slope_ * s;
+    };
+    const double half_way = std::max(bottom_, shape_.depth - 0.5 * shape_.block_height);
+    return std::max({reach(bottom_), reach(half_way), reach(shape_.depth)});
   }
 
   static IdealWrench upwards(double magnitude) { return {magnitude, {0.0, magnitude, 0.0}, Eigen::Vector3d::Zero()}; }
@@ -261,9 +273,10 @@ class ConeBlock final : public Scenario {
   }
 
   Shape shape_;
-  double slope_;   ///< radius / height of the cone
-  double tip_;     ///< radius of the cone in the plane of the block's top
-  double bottom_;  ///< lowest s inside the block, s: height above the apex
+  double slope_;      ///< radius / height of the cone
+  double tip_;        ///< radius of the cone in the plane of the block's top
+  double bottom_;     ///< lowest s inside the block, s: height above the apex
+  double end_reach_;  ///< See reach_of_end().
 };
 
 }  // namespace
@@ -285,7 +298,8 @@ std::unique_ptr<Scenario> make_cone_block(const Settings& settings, bool thin) {
   const std::vector<std::string> rules{
       "The block is a closed solid; an algorithm may not be told which face the cone came through.",
       "Force and torque are those on the cone, about the middle of its bounding box.",
-      "Plain measures are taken where the whole tip is over the block; the suffix _all means the whole path."};
+      "Plain measures are taken where the tip is over the block and nearer to its top or bottom than to an end; the "
+      "suffix _all means the whole path."};
   ConeBlock::Description description{
       thin ? "Ib" : "Ia",
       thin ? "Does a plate far thinner than the penetration still push back, or does the cone tunnel through it?"

@@ -48,6 +48,10 @@ struct Selection {
   std::map<Status, std::size_t> counted;  ///< Those of k_counted_statuses among them.
 };
 
+/// An ideal force (or torque) that is smaller than this part of the torque (force) at the reference length is zero up
+/// to rounding: errors relative to it mean nothing.
+constexpr double k_ideal_rounding = 1e-9;
+
 struct Evaluator {
   const Scenario& scenario;
   const Recording& recording;
@@ -103,8 +107,11 @@ struct Evaluator {
   void add_all(bool window_only, const std::string& suffix) {
     const Selection answered = select(window_only, true);
     const Selection every = select(window_only, false);
-    const bool has_force = peak(answered.force.ideal) > 0.0;
-    const bool has_torque = peak(answered.torque.ideal) > 0.0;
+    const double length = scenario.description().reference_length;
+    const double force = length * peak(answered.force.ideal);
+    const double torque = peak(answered.torque.ideal);
+    const bool has_force = force > k_ideal_rounding * torque;
+    const bool has_torque = torque > k_ideal_rounding * force;
     if (has_force) add_compared(answered.force, every.force, "_F", suffix);
     if (has_torque) add_compared(answered.torque, every.torque, "_T", suffix);
     if (peak(answered.ideal_penalties) > 0.0) add_penalties(answered, every, suffix);
@@ -120,7 +127,6 @@ struct Evaluator {
     }
     add("lag" + suffix, lag((every.*wanted).ideal, (every.*wanted).measured, k_lag_reach));
     if (has_force == has_torque) return;
-    const double length = scenario.description().reference_length;
     add("leakage" + suffix, has_force ? leakage(answered.torque.measured, answered.force.measured, 1.0 / length)
                                       : leakage(answered.force.measured, answered.torque.measured, length));
   }

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/query/variant.h>
 #include <sixdof/scenario/kinds.h>
 
 namespace sixdof {
@@ -61,7 +62,7 @@ std::vector<IdealLaw> all_ideal_laws() {
 }
 
 IdealLaw own_law(const Traits& traits) {
-  const auto* const known = std::ranges::find(k_limits, traits.name, &Limit::algorithm);
+  const auto* const known = std::ranges::find(k_limits, base_name(traits.name), &Limit::algorithm);
   if (known != k_limits.end()) return known->law;
   if (traits.law == ResponseLaw::none) {
     throw BadArgument(fmt::format("{} declares no law, so \"own\" has no meaning; name a law", traits.name));
