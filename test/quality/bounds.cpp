@@ -69,12 +69,13 @@ const std::vector<BoundLine>& own_lines() {
   static const std::vector<BoundLine> lines{
     // scenario, algorithm, law, reason, kind, measures; every subject has zero misses and failures besides
     {"Ia", "vps", depth, k_paper, required, {{"sigma_F", 0.043}}},
+    {"Ia", "vps", traction, k_paper, required, {{"sigma_F_all", 0.043}}},
     {"Ia", "ist", volume, k_paper, required, {{"sigma_F", 0.176}, {"sigma_F_all", 0.176}}},
     {"Ia", "ist-descent", volume, k_paper, required, {{"sigma_F", 0.176}}},
     {"II", "vps", depth, k_paper, required, {{"gamma_F_deg", 2.40}}},
     {"II", "ist", volume, k_paper, required, {{"gamma_F_deg", 7.64}}},
     {"II", "ist-descent", volume, k_paper, required, {{"gamma_F_deg", 7.64}}},
-    {"III", "vps", traction, k_paper, required, {{"sigma_T", 0.169}}},
+    {"III", "vps", traction, k_paper, required, {{"sigma_T", 0.169}, {"sigma_T_all", 0.169}, {"nu_T", 0.61}}},
     {"III", "ist", normals, k_paper, required, {{"sigma_T", 0.112}, {"sigma_T_all", 0.112}, {"nu_T", 0.12}}},
     {"III", "ist-descent", volume, k_paper, required, {{"sigma_T", 0.112}}},
     {"Ia", "exact", gradient, k_flat, required, {{"sigma_F", k_rounding}, {"noise_F", k_rounding}}},
