@@ -113,7 +113,7 @@ TEST(Evaluation, IdealsOfRoundingAreNone) {
   ASSERT_GT(ideal->torque.norm(), 0.0) << "then this test shows nothing";
   const auto m = by_name(evaluate(*plate, recording, IdealLaw::normals));
   for (const char* const measure : {"sigma_T", "gamma_T_deg", "nu_T", "noise_T"}) EXPECT_EQ(m.count(measure), 0u);
-  EXPECT_NEAR(m.at("leakage"), 3.0 / (ideal->force.norm() * plate->description().reference_length), 1e-6);
+  EXPECT_NEAR(m.at("leakage"), 3.0 / (ideal->force.norm() * plate->description().reference_length), k_rounding);
   EXPECT_EQ(m.count("sigma_T_all"), 1u) << "at the ends of the plate there is a torque";
 }
 

@@ -57,10 +57,10 @@ TEST_F(PathSettings, GiveWayToWhatTheUserSets) {
   for (const char* const assignment : {"spheres=10000", "spheres=77", "spheres_b=500"}) {
     EXPECT_EQ(of("II", "ist", {assignment}), with("ist", {assignment}));
   }
-  const std::string coarse = of("II", "ist", {});
-  EXPECT_NE(coarse, with("ist", {}));
+  const std::string fine = of("II", "ist", {});
+  EXPECT_NE(fine, with("ist", {}));
   const std::string seeded = of("II", "ist", {"seed=7"});
-  EXPECT_NE(seeded, coarse);
+  EXPECT_NE(seeded, fine);
   EXPECT_NE(seeded, with("ist", {"seed=7"})) << "another parameter leaves the resolution";
   EXPECT_THROW(of("II", "ist", {"seed=-1"}), BadArgument);
   EXPECT_THROW(of("II", "ist", {"spheres"}), BadArgument);

@@ -111,6 +111,7 @@ TEST(Scenario, RefusesContradictionsAndNothingElse) {
       {"Ia", {}, "depth", 59.9, 60.1},
       {"Ia", {}, "overshoot", 10.1, 9.9},
       {"Ib", {}, "block_length", 24.8, 24.6},                  // 2 (20 sqrt(1.25) - 10)
+      {"Ia", {}, "block_length", 35.2, 34.8},                  // twice from where the ends give no torque
       {"Ia", {"cone_radius=60"}, "block_length", 40.2, 39.8},  // twice the tip's radius
       {"Ia", {}, "block_width", 50.2, 49.8},                   // tip and half of the height
       {"Ia", {"block_height=60"}, "block_width", 60.2, 59.8},  // tip and depth

@@ -30,10 +30,24 @@ struct Shape {
     require(overshoot > tip, "the path must start beside the block: overshoot must exceed the tip's radius");
     // Somewhere leaving upwards must be shorter than leaving over an end.
     const double flank = std::sqrt(1.0 + std::pow(radius / height, 2));
-    require(block_length > 2.0 * std::max(tip, depth * flank - tip),
-            "the tip is never wholly over the block: block_length is too small");
+    require(block_length > 2.0 * std::max({tip, depth * flank - tip, reach_of_end()}),
+            "the tip is never wholly over the block and away from its ends: block_length is too small");
     require(0.5 * block_width > tip + std::min(depth, 0.5 * block_height),
             "the block's long edges are too near the tip: block_width is too small");
+  }
+
+  /// Lowest height above the apex that is inside the block.
+  double bottom() const { return std::max(0.0, depth - block_height); }
+
+  /// Distance of the axis from an end at which that end stops to be the nearest face of any part of the flank: the most
+  /// of the depth below top or bottom plus the flank's radius. Both are linear, with a kink half-way between the faces.
+  double reach_of_end() const {
+    const auto reach = [&](double s) {
+      const double below_top = depth - s;
+      return std::min(below_top, block_height - below_top) + radius / height * s;
+    };
+    const double half_way = std::max(bottom(), depth - 0.5 * block_height);
+    return std::max({reach(bottom()), reach(half_way), reach(depth)});
   }
 };
 
@@ -52,8 +66,8 @@ class ConeBlock final : public Scenario {
         shape_(shape),
         slope_(shape.radius / shape.height),
         tip_(slope_ * shape.depth),
-        bottom_(std::max(0.0, shape.depth - shape.block_height)),
-        end_reach_(reach_of_end()) {}
+        bottom_(shape.bottom()),
+        end_reach_(shape.reach_of_end()) {}
 
   Pose pose(double progress) const override {
     return {Eigen::Matrix3d::Identity(), {apex_x(progress), -shape_.depth, 0.0}};
@@ -96,17 +110,6 @@ class ConeBlock final : public Scenario {
  private:
   double apex_x(double progress) const {
     return -shape_.overshoot + progress * (shape_.block_length + 2.0 * shape_.overshoot);
-  }
-
-  /// Distance of the axis from an end at which that end stops to be the nearest face of any part of the flank: the most
-  /// of the depth below top or bottom plus the flank's radius. Both are linear, with a kink half-way between the faces.
-  double reach_of_end() const {
-    const auto reach = [&](double s) {
-      const double below_top = shape_.depth - s;
-      return std::min(below_top, shape_.block_height - below_top) + slope_ * s;
-    };
-    const double half_way = std::max(bottom_, shape_.depth - 0.5 * shape_.block_height);
-    return std::max({reach(bottom_), reach(half_way), reach(shape_.depth)});
   }
 
   static IdealWrench upwards(double magnitude) { return {magnitude, {0.0, magnitude, 0.0}, Eigen::Vector3d::Zero()}; }
@@ -276,7 +279,7 @@ class ConeBlock final : public Scenario {
   double slope_;      ///< radius / height of the cone
   double tip_;        ///< radius of the cone in the plane of the block's top
   double bottom_;     ///< lowest s inside the block, s: height above the apex
-  double end_reach_;  ///< See reach_of_end().
+  double end_reach_;  ///< See Shape::reach_of_end().
 };
 
 }  // namespace

@@ -48,9 +48,18 @@ struct Selection {
   std::map<Status, std::size_t> counted;  ///< Those of k_counted_statuses among them.
 };
 
-/// An ideal force (or torque) that is smaller than this part of the torque (force) at the reference length is zero up
-/// to rounding: errors relative to it mean nothing.
-constexpr double k_ideal_rounding = 1e-9;
+/// Which parts of an ideal wrench are not zero.
+struct Parts {
+  bool force, torque;
+};
+
+/// A force (or torque) that is below 1e-9 of the torque (force) at the reference length is zero: in Ib rounding leaves
+/// 1e-16, and no scenario has a part that small.
+Parts parts_of(const Scenario& scenario, Vectors forces, Vectors torques) {
+  constexpr double k_rounding = 1e-9;
+  const double force = scenario.description().reference_length * peak(forces), torque = peak(torques);
+  return {force > k_rounding * torque, torque > k_rounding * force};
+}
 
 struct Evaluator {
   const Scenario& scenario;
@@ -107,11 +116,7 @@ struct Evaluator {
   void add_all(bool window_only, const std::string& suffix) {
     const Selection answered = select(window_only, true);
     const Selection every = select(window_only, false);
-    const double length = scenario.description().reference_length;
-    const double force = length * peak(answered.force.ideal);
-    const double torque = peak(answered.torque.ideal);
-    const bool has_force = force > k_ideal_rounding * torque;
-    const bool has_torque = torque > k_ideal_rounding * force;
+    const auto [has_force, has_torque] = parts_of(scenario, answered.force.ideal, answered.torque.ideal);
     if (has_force) add_compared(answered.force, every.force, "_F", suffix);
     if (has_torque) add_compared(answered.torque, every.torque, "_T", suffix);
     if (peak(answered.ideal_penalties) > 0.0) add_penalties(answered, every, suffix);
@@ -127,6 +132,7 @@ struct Evaluator {
     }
     add("lag" + suffix, lag((every.*wanted).ideal, (every.*wanted).measured, k_lag_reach));
     if (has_force == has_torque) return;
+    const double length = scenario.description().reference_length;
     add("leakage" + suffix, has_force ? leakage(answered.torque.measured, answered.force.measured, 1.0 / length)
                                       : leakage(answered.force.measured, answered.torque.measured, length));
   }
@@ -264,8 +270,8 @@ Measures evaluate_jumps(const Scenario& scenario, Query& query, const Recording&
   constexpr std::size_t k_candidates = 4;
   constexpr std::size_t k_halvings = 10;
   Measures measures;
-  const auto add = [&](const char* name, Vectors ideal, Vectors measured, Eigen::Vector3d Response::*component) {
-    if (peak(ideal) == 0.0 || peak(measured) == 0.0) return;
+  const auto add = [&](const char* name, bool is_ideal, Vectors measured, Eigen::Vector3d Response::*component) {
+    if (!is_ideal || peak(measured) == 0.0) return;
     const auto at = [&](double progress) -> Eigen::Vector3d {
       std::string diagnosis;
       const Outcome<Response> outcome = respond_at(scenario, query, progress, diagnosis);
@@ -274,8 +280,9 @@ Measures evaluate_jumps(const Scenario& scenario, Query& query, const Recording&
     const double jump = largest_jump(recording.progress, measured, at, k_candidates, k_halvings);
     measures.emplace_back(name, jump / peak(measured));
   };
-  add("jump_F", ideals.forces, recording.forces, &Response::force);
-  add("jump_T", ideals.torques, recording.torques, &Response::torque);
+  const auto [has_force, has_torque] = parts_of(scenario, ideals.forces, ideals.torques);
+  add("jump_F", has_force, recording.forces, &Response::force);
+  add("jump_T", has_torque, recording.torques, &Response::torque);
   return measures;
 }
 
